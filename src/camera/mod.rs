@@ -1,0 +1,3 @@
+//! Where the cameras stand.
+mod sphere;
+pub use sphere::CameraWeights;

@@ -1,0 +1,25 @@
+//! Geometry of single triangles and boxes, without any notion of a mesh.
+
+mod bounds;
+
+pub use bounds::Aabb;
+
+use glam::DVec3;
+
+/// Twice the area of triangle `abc` times its unit normal; zero where the triangle has no area.
+#[must_use]
+pub fn area_vector_doubled([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a)
+}
+
+/// Area of a triangle, in units of its corners squared.
+#[must_use]
+pub fn triangle_area(corners: [DVec3; 3]) -> f64 {
+    0.5 * area_vector_doubled(corners).length()
+}
+
+/// Unit normal by the right-hand rule, `None` where the triangle has no area.
+#[must_use]
+pub fn triangle_normal(corners: [DVec3; 3]) -> Option<DVec3> {
+    area_vector_doubled(corners).try_normalize()
+}

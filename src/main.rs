@@ -1,0 +1,3 @@
+//! The `outsight` program.
+
+fn main() {}
