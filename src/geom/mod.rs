@@ -1,8 +1,10 @@
 //! Geometry of single triangles and boxes, without any notion of a mesh.
 
 mod bounds;
+mod octahedron;
 
 pub use bounds::Aabb;
+pub use octahedron::OctahedralSphere;
 
 use glam::DVec3;
 

@@ -4,6 +4,10 @@
 //! checking: every index is in range, no triangle repeats a vertex, every coordinate is finite, and there is at least
 //! one triangle. What a file holds beyond that is set aside, and counted, by [`TriMesh::from_triangles`].
 
+mod rings;
+
+pub use rings::VertexTriangles;
+
 use glam::DVec3;
 
 use crate::geom::{self, Aabb};
@@ -131,10 +135,7 @@ impl TriMesh {
     ///
     /// # Errors
     /// [`MeshError`] for what cannot be set aside: wrong indices, wrong coordinates, no triangle left.
-    pub fn from_triangles(
-        positions: Vec<DVec3>,
-        mut triangles: Vec<[u32; 3]>,
-    ) -> Result<(Self, SetAside), MeshError> {
+    pub fn from_triangles(positions: Vec<DVec3>, mut triangles: Vec<[u32; 3]>) -> Result<(Self, SetAside), MeshError> {
         check_counts(&positions, &triangles)?;
         check_positions(&positions)?;
         check_indices(&positions, &triangles)?;
@@ -192,10 +193,11 @@ impl TriMesh {
         self.triangles[triangle.0 as usize].map(|v| self.positions[v as usize])
     }
 
-    /// Box around all vertices, those that no triangle uses included.
+    /// Box around all triangles; vertices that no triangle uses do not count.
     #[must_use]
     pub fn bounds(&self) -> Aabb {
-        Aabb::around(&self.positions).expect("a mesh has at least one triangle, so it has vertices")
+        let corners = self.triangles.iter().flatten().map(|&v| self.positions[v as usize]);
+        Aabb::around(corners).expect("a mesh has at least one triangle")
     }
 
     /// Its vertices and triangles.
