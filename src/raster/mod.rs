@@ -11,6 +11,8 @@ mod draw;
 mod item_buffer;
 mod project;
 mod scene;
+mod shade;
 
 pub use item_buffer::{Hit, ItemBufferPair, Side};
 pub use scene::{Scene, Screen};
+pub use shade::{GreyImage, shade};
