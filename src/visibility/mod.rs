@@ -6,11 +6,13 @@
 
 mod coverage;
 mod hidden;
+mod importance;
 mod options;
 mod pool;
 
 pub use coverage::CoverageCounts;
 pub use hidden::hidden_triangles;
+pub use importance::{Hidden, importance};
 pub use options::{Estimator, MeasureOptions, Sides};
 
 use glam::DVec3;
