@@ -131,10 +131,7 @@ impl TriMesh {
     ///
     /// # Errors
     /// [`MeshError`] for what cannot be set aside: wrong indices, wrong coordinates, no triangle left.
-    pub fn from_triangles(
-        positions: Vec<DVec3>,
-        mut triangles: Vec<[u32; 3]>,
-    ) -> Result<(Self, SetAside), MeshError> {
+    pub fn from_triangles(positions: Vec<DVec3>, mut triangles: Vec<[u32; 3]>) -> Result<(Self, SetAside), MeshError> {
         check_counts(&positions, &triangles)?;
         check_positions(&positions)?;
         check_indices(&positions, &triangles)?;
