@@ -7,6 +7,9 @@
 mod rings;
 
 pub use rings::VertexTriangles;
+mod weld;
+
+pub use weld::{Welder, weld};
 
 use glam::DVec3;
 
