@@ -10,6 +10,7 @@ pub use rings::VertexTriangles;
 mod weld;
 
 pub use weld::{Welder, weld};
+pub mod adjacency;
 
 use glam::DVec3;
 
