@@ -11,6 +11,7 @@ mod weld;
 
 pub use weld::{Welder, weld};
 pub mod adjacency;
+pub mod shapes;
 
 use glam::DVec3;
 
