@@ -1,1 +1,112 @@
-//! (to come)
+//! The straight path, from mesh file to result.
+//!
+//! [`run_simplify`] is the whole of it:
+//!
+//! ```text
+//! mesh file → io → mesh → camera → backend → visibility → weights → simplify → io → mesh file
+//! ```
+//!
+//! [`measure_file`], [`compare_files`] and [`render_file`] leave it early or look at its two ends.
+
+mod compare;
+mod measure;
+mod render;
+mod simplify;
+
+pub use compare::{CompareReport, CompareRequest, GeometricReport, TestReport, compare_files};
+pub use measure::{MeasureReport, MeasureRequest, MeasureSeconds, VisibilitySummary, measure_file};
+pub use render::{RenderRequest, Style, render_file};
+pub use simplify::{
+    LevelReport, LevelRequest, Metric, Simplified, SimplifyReport, SimplifyRequest, SimplifySeconds, simplify_seen,
+};
+
+use std::path::Path;
+use std::time::Instant;
+
+use crate::error::Result;
+use crate::io::{self, Loaded, TriangleAttributes, WriteOptions};
+use crate::progress::{CancelFlag, Progress, Silent};
+use crate::visibility;
+
+/// Reads a mesh, looks at it, simplifies it where nobody looks, writes every level.
+///
+/// # Errors
+/// As its steps. What was written before an error stays; each file is whole or not there.
+pub fn run_simplify(request: &SimplifyRequest, observer: &dyn Observer) -> Result<SimplifyReport> {
+    let mut clock = Clock::start();
+    request.check()?;
+    let mesh = {
+        let loaded = io::read(&request.input, &request.read)?;
+        observer.mesh_read(&request.input, &loaded)?;
+        loaded.mesh
+    };
+    let read = clock.lap();
+    let view = match request.metric {
+        Metric::Visibility => Some(visibility::look(&mesh, &request.measure, request.hidden, observer)?),
+        Metric::Quadric => None,
+    };
+    let looked = clock.lap();
+    let triangles = mesh.triangle_count();
+    let simplified = simplify_seen(mesh, view, request, observer)?;
+    let collapsed = clock.lap();
+    for (level, wanted) in simplified.levels.iter().zip(&request.levels) {
+        observer.check()?;
+        let options = WriteOptions { force: request.force, format: request.format };
+        io::write(&wanted.output, &level.mesh, &TriangleAttributes::default(), &options)?;
+    }
+    let seconds = SimplifySeconds {
+        read,
+        visibility: looked,
+        simplify: collapsed,
+        write: clock.lap(),
+        total: clock.total(),
+    };
+    Ok(SimplifyReport::new(request, triangles, &simplified, seconds))
+}
+
+/// Follows a run: its progress, and what its user should know before the long work starts.
+pub trait Observer: Progress {
+    /// A mesh was read; an error ends the run.
+    ///
+    /// # Errors
+    /// Whatever the observer decides.
+    fn mesh_read(&self, _path: &Path, _loaded: &Loaded) -> Result<()> {
+        Ok(())
+    }
+
+    /// `deleted` of `given` triangles are hidden and leave the mesh before it is simplified.
+    ///
+    /// # Errors
+    /// Whatever the observer decides.
+    fn hidden_deleted(&self, _deleted: usize, _given: usize) -> Result<()> {
+        Ok(())
+    }
+}
+
+impl Observer for Silent {}
+impl Observer for CancelFlag {}
+
+/// Wall time, lap by lap.
+struct Clock {
+    start: Instant,
+    lap: Instant,
+}
+
+impl Clock {
+    fn start() -> Self {
+        let now = Instant::now();
+        Self { start: now, lap: now }
+    }
+
+    /// Seconds since the last lap.
+    fn lap(&mut self) -> f64 {
+        let now = Instant::now();
+        let seconds = now.duration_since(self.lap).as_secs_f64();
+        self.lap = now;
+        seconds
+    }
+
+    fn total(&self) -> f64 {
+        self.start.elapsed().as_secs_f64()
+    }
+}

@@ -1,0 +1,117 @@
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use crate::error::Result;
+use crate::io::{self, Loaded, ReadOptions, TriangleAttributes, WriteOptions};
+use crate::pipeline::{Clock, Observer};
+use crate::report::colour::ColourMap;
+use crate::visibility::{self, MeasureOptions, Visibility};
+
+/// What [`measure_file`] does.
+#[derive(Debug, Clone)]
+pub struct MeasureRequest {
+    /// The mesh.
+    pub input: PathBuf,
+    /// How it is read.
+    pub read: ReadOptions,
+    /// How it is looked at.
+    pub measure: MeasureOptions,
+    /// A mesh file (PLY carries visibility and heat colours), `.npy` or `.csv` to write.
+    pub output: Option<PathBuf>,
+    /// Heat colours in a PLY output.
+    pub colour_map: ColourMap,
+    /// Replace an output that is there.
+    pub force: bool,
+}
+
+/// Result of [`measure_file`].
+#[derive(Debug, Clone, Serialize)]
+pub struct MeasureReport {
+    /// Triangles looked at.
+    pub triangles: usize,
+    /// Cameras.
+    pub cameras: usize,
+    /// Pixels along an image's side.
+    pub resolution: u32,
+    /// Who looked.
+    pub backend: &'static str,
+    /// What was counted.
+    pub estimator: &'static str,
+    /// Which side of a triangle made its visibility.
+    pub sides: &'static str,
+    /// The numbers.
+    pub visibility: VisibilitySummary,
+    /// Where the time went.
+    pub seconds: MeasureSeconds,
+}
+
+/// Visibility of a whole mesh.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct VisibilitySummary {
+    /// V(M), one-sided. Source: Zhang & Turk 2002, eq. (3.2).
+    pub mesh: f64,
+    /// The same under the rule for sides.
+    pub mesh_sides: f64,
+    /// Triangles that no camera sees.
+    pub never_seen: usize,
+}
+
+/// Seconds of wall time per step.
+#[derive(Debug, Clone, Copy, Default, Serialize)]
+pub struct MeasureSeconds {
+    /// Reading and checking the file.
+    pub read: f64,
+    /// Preparing to look.
+    pub build: f64,
+    /// Looking.
+    pub visibility: f64,
+    /// All of it, writing included.
+    pub total: f64,
+}
+
+/// Reads a mesh, looks at it, writes how visible each triangle is.
+///
+/// # Errors
+/// As its steps.
+pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result<MeasureReport> {
+    let mut clock = Clock::start();
+    request.measure.check()?;
+    let loaded = io::read(&request.input, &request.read)?;
+    observer.mesh_read(&request.input, &loaded)?;
+    let read = clock.lap();
+    let scene = visibility::scene_of(&loaded.mesh);
+    let build = clock.lap();
+    let visibility = visibility::measure_scene(&scene, &loaded.mesh, &request.measure, observer)?;
+    let looked = clock.lap();
+    if let Some(output) = &request.output {
+        write(output, &loaded, &visibility, request)?;
+    }
+    Ok(MeasureReport {
+        triangles: loaded.mesh.triangle_count(),
+        cameras: visibility.cameras(),
+        resolution: visibility.resolution(),
+        backend: request.measure.backend.name(),
+        estimator: request.measure.estimator.name(),
+        sides: request.measure.sides.name(),
+        visibility: VisibilitySummary {
+            mesh: visibility.of_mesh(),
+            mesh_sides: visibility.of_mesh_sides(),
+            never_seen: visibility.never_seen(),
+        },
+        seconds: MeasureSeconds { read, build, visibility: looked, total: clock.total() },
+    })
+}
+
+fn write(path: &Path, loaded: &Loaded, visibility: &Visibility, request: &MeasureRequest) -> Result<()> {
+    let values = visibility.per_triangle();
+    match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
+        Some("npy") => io::write_npy_f64(path, &loaded.in_file_order(values, 0.0), request.force),
+        Some("csv") => io::write_visibility_csv(path, &loaded.in_file_order(values, 0.0), request.force),
+        _ => {
+            let colours: Vec<[u8; 3]> = values.iter().map(|&v| request.colour_map.colour(v)).collect();
+            let attributes = TriangleAttributes { visibility: Some(values), colours: Some(&colours) };
+            io::write(path, &loaded.mesh, &attributes, &WriteOptions { force: request.force, format: None })
+        }
+    }
+}
