@@ -99,7 +99,7 @@ fn parts_cover_the_gearbox_in_order_under_different_names() {
 
 #[test]
 fn other_details_give_closed_gearboxes_too() {
-    for detail in [0.25, 0.5] {
+    for detail in [0.5, 0.7, 1.5, 2.0] {
         let coarse = gearbox(detail);
         for (name, range) in &coarse.parts {
             assert_eq!(unpaired_edges(&coarse.mesh.triangles()[range.clone()]), 0, "{name} at detail {detail}");

@@ -24,7 +24,7 @@ pub use cavity::{
 pub use clutter::{cluttered_open_box, cluttered_sealed_box};
 pub use facing::{coaxial_discs, parallel_squares, right_angle_squares, wedge};
 pub use flat::{cuboid, sheet, tetrahedron};
-pub use gearbox::gearbox;
+pub use gearbox::{Assembly, gearbox};
 pub use round::{bumpy_sphere, disc, ellipsoid, icosphere, torus, uv_sphere};
 
 use std::ops::Range;

@@ -76,26 +76,26 @@ fn add_dipstick(parts: &mut Parts, detail: Detail) {
 
 fn add_drain_plug(parts: &mut Parts, detail: Detail) {
     let (foot, outward) = on_wall(&AXLES[2], -38.0, -22.0);
-    let pad = stepped(&[[-5.0, 3.5, 17.0]], 1.2, detail.around(17.0));
+    let pad = stepped(&[[-5.0, 9.5, 17.0]], 1.2, detail.around(17.0));
     parts.add("drain pad", &pad, &along(foot, outward));
-    parts.add("drain seal", &ring([7.5, 13.0], [3.6, 5.4], detail.around(13.0)), &along(foot, outward));
-    parts.add("drain plug", &hex_screw(6.0, 18.0, detail), &along(foot + outward * 5.45, outward));
+    parts.add("drain seal", &ring([7.5, 13.0], [9.6, 11.4], detail.around(13.0)), &along(foot, outward));
+    parts.add("drain plug", &hex_screw(6.0, 24.0, detail), &along(foot + outward * 11.45, outward));
 }
 
 fn add_sight_glass(parts: &mut Parts, detail: Detail) {
     let (foot, outward) = on_wall(&AXLES[2], -4.0, -22.0);
-    let section = [[11.0, -4.0], [19.0, -4.0], [19.0, 6.0], [17.5, 7.5], [12.5, 7.5], [11.0, 5.0]].map(DVec2::from);
+    let section = [[11.0, -4.0], [19.0, -4.0], [19.0, 10.5], [17.5, 12.0], [12.5, 12.0], [11.0, 9.5]].map(DVec2::from);
     parts.add("sight glass frame", &revolve_closed(&section, detail.around(19.0)), &along(foot, outward));
-    parts.add("sight glass", &stepped(&[[-3.0, 3.0, 11.2]], 0.5, detail.around(11.0)), &along(foot, outward));
+    parts.add("sight glass", &stepped(&[[-3.0, 7.0, 11.2]], 0.5, detail.around(11.0)), &along(foot, outward));
     for (i, centre) in on_circle(15.2, 6, 0.2).iter().enumerate() {
-        let screw = along(foot + outward * 7.5, outward) * at(*centre, 0.0);
+        let screw = along(foot + outward * 12.0, outward) * at(*centre, 0.0);
         parts.add(format!("sight glass screw {i}"), &hex_screw(1.2, 6.0, detail), &screw);
     }
 }
 
 /// Plate with two lines of raised lettering bars and four rivets, on the cover.
 fn add_name_plate(parts: &mut Parts, detail: Detail) {
-    let centre = DVec2::new(14.0, 55.0);
+    let centre = DVec2::new(-4.0, 53.0);
     let half = DVec2::new(24.0, 13.0);
     let plate = extrude(&rounded_rectangle(DVec2::ZERO, half, 3.0, detail.steps(5.0)), &[], [-1.0, 1.5]);
     parts.add("name plate", &plate, &at(centre, COVER_END));

@@ -20,6 +20,9 @@ const BOLT_OFFSET: f64 = 11.0;
 const BOLT_HOLE: f64 = 4.5;
 /// The straight side of the belt that faces up: from the output shaft back to the input shaft.
 pub(super) const TOP: usize = 2;
+/// The straight sides that face down, towards the input shaft and towards the output shaft.
+const LOWER_LEFT: usize = 0;
+const LOWER_RIGHT: usize = 1;
 /// Half length along the wall, half width along w, and corner radius of the inspection port.
 pub(super) const PORT: [f64; 3] = [60.0, 40.0, 12.0];
 /// Middle of the port: along the top side from its corner at the output shaft, and above the case's end.
@@ -60,13 +63,28 @@ fn case(belt: &BeltOutline, detail: Detail) -> TriMesh {
     }
     let mut floor_holes = bores(detail);
     floor_holes.extend(end_vents(detail));
-    cup(&Cup { belt, depth: JOINT - CASE_END, floor_holes, wall_holes: vec![(TOP, top)] }, detail)
+    let wall_holes = vec![(LOWER_LEFT, wall_vents(78.0, detail)), (LOWER_RIGHT, wall_vents(102.0, detail)), (TOP, top)];
+    cup(&Cup { belt, depth: JOINT - CASE_END, floor_holes, wall_holes }, detail)
 }
 
 fn cover(belt: &BeltOutline, detail: Detail) -> TriMesh {
     let mut floor_holes = bores(detail);
     floor_holes.extend(end_vents(detail));
     cup(&Cup { belt, depth: COVER_END - JOINT, floor_holes, wall_holes: Vec::new() }, detail)
+}
+
+/// Ventilation slots across a side of the given length, between the webs of the feet.
+fn wall_vents(length: f64, detail: Detail) -> Vec<Vec<DVec2>> {
+    const PITCH: f64 = 11.0;
+    let count = (length / PITCH) as usize - 1;
+    let slot = |i: usize| {
+        // Slots swell towards the middle of the row, so that no three of their corners lie in line.
+        let from_middle = i as f64 - 0.5 * (count as f64 - 1.0);
+        let half = DVec2::new(3.3, 29.0 - 0.3 * from_middle * from_middle);
+        let middle = DVec2::new(0.5 * length + PITCH * from_middle, 58.0 + 0.2 * from_middle);
+        rounded_rectangle(middle, half, 3.1, detail.steps(4.0))
+    };
+    (0..count).map(slot).collect()
 }
 
 /// Outline of the inspection port round `middle`, `wider` than the hole in the wall.
@@ -86,10 +104,10 @@ fn bores(detail: Detail) -> Vec<Vec<DVec2>> {
 fn end_vents(detail: Detail) -> Vec<Vec<DVec2>> {
     let slot = |i: usize| {
         let middle = (40.0 * (i as f64 - 1.0)).to_radians();
-        let half = 11.0_f64.to_radians();
-        bent_slot(AXLES[2].centre, 70.0, [middle - half, middle + half], 6.0, detail.steps(7.0))
+        let half = 10.0_f64.to_radians();
+        bent_slot(AXLES[2].centre, 72.0, [middle - half, middle + half], 8.5, detail.steps(7.0))
     };
-    (0..4).map(slot).collect()
+    (0..5).map(slot).collect()
 }
 
 fn cup(cup: &Cup<'_>, detail: Detail) -> TriMesh {

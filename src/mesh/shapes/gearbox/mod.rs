@@ -36,13 +36,13 @@ pub struct Assembly {
     pub parts: Vec<(String, Range<usize>)>,
 }
 
-/// The gearbox, in millimetres; about 100,000 triangles at detail 1.
+/// The gearbox, in millimetres; about 130,000 triangles at detail 1.
 ///
-/// `detail` multiplies the corners of every circle (kept within 0.25 to 4). Coordinates are multiples of 1/1024 mm, so
+/// `detail` multiplies the corners of every circle (kept within 0.5 to 2). Coordinates are multiples of 1/1024 mm, so
 /// that `f32` holds them exactly.
 #[must_use]
 pub fn gearbox(detail: f64) -> Assembly {
-    let detail = Detail(detail.clamp(0.25, 4.0));
+    let detail = Detail(detail.clamp(0.5, 2.0));
     let mut parts = Parts::default();
     housing::add(&mut parts, detail);
     shafts::add(&mut parts, detail);

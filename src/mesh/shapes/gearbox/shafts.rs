@@ -62,7 +62,7 @@ fn add_bearing(parts: &mut Parts, axle: &Axle, end: &str, placement: &DAffine3, 
         parts.add(name(&format!("shield {i}")), &shield, &centred);
     }
     let count = 9 + usize::from(axle.bearing > 30.0) * 2;
-    let sphere = uv_sphere(detail.steps(16.0).max(6), detail.steps(8.0).max(4));
+    let sphere = uv_sphere(detail.steps(14.0).max(6), detail.steps(7.0).max(4));
     let sized = transformed(&sphere, &DAffine3::from_scale(DVec3::splat(0.98 * ball))).expect("balls have millimetres");
     for i in 0..count {
         let centre = direction(TAU * i as f64 / count as f64) * track;
@@ -75,7 +75,7 @@ fn race(seat: f64, [track, shoulder]: [f64; 2], [ball, half]: [f64; 2], segments
     let outward = shoulder.signum();
     let edge = track + shoulder;
     let depth = libm::acos(shoulder.abs() / ball);
-    let mut section: Vec<DVec2> = arc(DVec2::new(0.0, 0.0), ball, [-depth, depth], detail.steps(8.0))
+    let mut section: Vec<DVec2> = arc(DVec2::new(0.0, 0.0), ball, [-depth, depth], detail.steps(6.0))
         .iter()
         .map(|p| DVec2::new(track + outward * p.x, p.y))
         .collect();
