@@ -54,13 +54,8 @@ pub fn run_simplify(request: &SimplifyRequest, observer: &dyn Observer) -> Resul
         let options = WriteOptions { force: request.force, format: request.format };
         io::write(&wanted.output, &level.mesh, &TriangleAttributes::default(), &options)?;
     }
-    let seconds = SimplifySeconds {
-        read,
-        visibility: looked,
-        simplify: collapsed,
-        write: clock.lap(),
-        total: clock.total(),
-    };
+    let seconds =
+        SimplifySeconds { read, visibility: looked, simplify: collapsed, write: clock.lap(), total: clock.total() };
     Ok(SimplifyReport::new(request, triangles, &simplified, seconds))
 }
 

@@ -107,7 +107,11 @@ fn write(path: &Path, loaded: &Loaded, visibility: &Visibility, request: &Measur
     let values = visibility.per_triangle();
     match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
         Some("npy") => io::write_npy_f64(path, &loaded.in_file_order(values, 0.0), request.force),
-        Some("csv") => io::write_visibility_csv(path, &loaded.in_file_order(values, 0.0), request.force),
+        Some("csv") => {
+            let columns = [values, visibility.front(), visibility.back()].map(|v| loaded.in_file_order(v, 0.0));
+            let named = ["visibility", "front", "back"].into_iter().zip(columns.iter().map(Vec::as_slice));
+            io::write_visibility_csv(path, &named.collect::<Vec<_>>(), request.force)
+        }
         _ => {
             let colours: Vec<[u8; 3]> = values.iter().map(|&v| request.colour_map.colour(v)).collect();
             let attributes = TriangleAttributes { visibility: Some(values), colours: Some(&colours) };

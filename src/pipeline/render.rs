@@ -76,13 +76,7 @@ fn flat(mesh: &TriMesh, toward: DVec3, up: DVec3, request: &RenderRequest) -> Re
 }
 
 /// Heat colours, darkened by half where the surface turns away, so that its shape shows.
-fn heat(
-    mesh: &TriMesh,
-    toward: DVec3,
-    up: DVec3,
-    request: &RenderRequest,
-    observer: &dyn Observer,
-) -> Result<Picture> {
+fn heat(mesh: &TriMesh, toward: DVec3, up: DVec3, request: &RenderRequest, observer: &dyn Observer) -> Result<Picture> {
     let visibility = visibility::measure(mesh, &request.measure, observer)?;
     let gallery = Gallery::new(mesh, mesh);
     let picture = gallery.coloured(toward, up, request.size, |hit, brightness| {
