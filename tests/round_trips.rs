@@ -266,7 +266,7 @@ fn concave_polygon_of_66_corners_becomes_64_triangles_of_its_area() {
     assert_eq!(loaded.mesh.triangle_count(), 64);
     let doubled: Vec<f64> = corners(&loaded.mesh).iter().map(|[a, b, c]| (b - a).cross(c - a).z).collect();
     assert!(doubled.iter().all(|&a| a > 0.0));
-    // The last corner, at the origin's right, is left out: half a tooth and a corner of the bar are gone.
+    // The saw's 67th corner, (0, 0), is left out, so its area is taken from the corners themselves.
     assert!((doubled.iter().sum::<f64>() - 2.0 * shoelace(&loaded.mesh)).abs() < 1e-12);
 }
 
