@@ -20,6 +20,19 @@ pub enum Format {
     Off,
 }
 
+impl Format {
+    /// The ending of its files.
+    #[must_use]
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Ply => "ply",
+            Self::Obj => "obj",
+            Self::Stl => "stl",
+            Self::Off => "off",
+        }
+    }
+}
+
 /// Something a file held that Outsight cannot carry over yet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Dropped {
@@ -80,4 +93,40 @@ pub struct TriangleAttributes<'a> {
 /// [`crate::Error::Read`], [`crate::Error::Parse`], [`crate::Error::Mesh`], [`crate::Error::Limit`].
 pub fn read(_path: &Path, _options: &ReadOptions) -> Result<Loaded> {
     Err(crate::Error::Unavailable { message: "to come".to_owned() })
+}
+
+/// How a mesh is written.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct WriteOptions {
+    /// Replace a file that is there.
+    pub force: bool,
+    /// The format, where the extension does not say it.
+    pub format: Option<Format>,
+}
+
+/// Writes a mesh; `-` is standard output.
+///
+/// # Errors
+/// [`crate::Error::Write`].
+pub fn write(
+    _path: &Path,
+    _mesh: &TriMesh,
+    _attributes: &TriangleAttributes<'_>,
+    _options: &WriteOptions,
+) -> Result<()> {
+    Err(crate::Error::Unavailable { message: "to come".to_owned() })
+}
+
+/// Writes a file beside `path` and renames it.
+///
+/// # Errors
+/// [`crate::Error::Write`].
+pub fn write_atomic(
+    path: &Path,
+    _force: bool,
+    write: impl FnOnce(&mut dyn std::io::Write) -> std::io::Result<()>,
+) -> Result<()> {
+    let fail = |e: std::io::Error| crate::Error::Write { path: path.to_owned(), message: e.to_string() };
+    let mut file = std::fs::File::create(path).map_err(fail)?;
+    write(&mut file).map_err(fail)
 }

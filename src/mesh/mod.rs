@@ -4,6 +4,8 @@
 //! checking: every index is in range, no triangle repeats a vertex, every coordinate is finite, and there is at least
 //! one triangle. What a file holds beyond that is set aside, and counted, by [`TriMesh::from_triangles`].
 
+pub mod adjacency;
+
 use glam::DVec3;
 
 use crate::geom::{self, Aabb};
@@ -131,10 +133,7 @@ impl TriMesh {
     ///
     /// # Errors
     /// [`MeshError`] for what cannot be set aside: wrong indices, wrong coordinates, no triangle left.
-    pub fn from_triangles(
-        positions: Vec<DVec3>,
-        mut triangles: Vec<[u32; 3]>,
-    ) -> Result<(Self, SetAside), MeshError> {
+    pub fn from_triangles(positions: Vec<DVec3>, mut triangles: Vec<[u32; 3]>) -> Result<(Self, SetAside), MeshError> {
         check_counts(&positions, &triangles)?;
         check_positions(&positions)?;
         check_indices(&positions, &triangles)?;

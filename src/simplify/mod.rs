@@ -128,3 +128,17 @@ pub fn simplify(
 ) -> Result<Vec<Level>> {
     Ok(Vec::new())
 }
+
+impl Default for SimplifyOptions {
+    fn default() -> Self {
+        Self {
+            targets: Vec::new(),
+            max_error: None,
+            plane_weight: PlaneWeight::Area,
+            topology: Topology::Free,
+            boundary: Boundary::Weight(1.0),
+            min_normal_cosine: 0.2,
+            regulariser: 1e-6,
+        }
+    }
+}

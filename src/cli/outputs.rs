@@ -1,0 +1,190 @@
+//! Checks outputs before the long work starts, and names the files of several levels.
+
+use std::path::{Path, PathBuf};
+
+use outsight::error::{Error, Result};
+use outsight::io::Format;
+
+/// Endings that stand behind another: the file is compressed.
+const COMPRESSED: [&str; 2] = ["zst", "gz"];
+
+/// What a command may write.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// A mesh in any format.
+    Mesh,
+    /// The visibility of each triangle: PLY, NumPy or CSV.
+    Visibility,
+    /// A PNG picture.
+    Picture,
+}
+
+impl Kind {
+    fn endings(self) -> &'static [&'static str] {
+        match self {
+            Self::Mesh => &["ply", "obj", "stl", "off"],
+            Self::Visibility => &["ply", "npy", "csv"],
+            Self::Picture => &["png"],
+        }
+    }
+
+    fn may_be_compressed(self, ending: &str) -> bool {
+        self == Self::Mesh || ending == "ply"
+    }
+}
+
+/// An output that a command is going to write.
+#[derive(Debug, Clone, Copy)]
+pub struct Planned<'a> {
+    /// Where it goes; `-` is standard output.
+    pub path: &'a Path,
+    /// What it may be.
+    pub kind: Kind,
+    /// Its format, where a flag says it.
+    pub format: Option<Format>,
+}
+
+/// True for standard input or output.
+pub fn is_pipe(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// Refuses an output that could not be written in the end: unknown ending, an input of the run, there already, no such
+/// directory, or not writable.
+///
+/// # Errors
+/// [`Error::Option`] for a wrong name, [`Error::Write`] for what is in the way.
+pub fn check(output: Planned<'_>, inputs: &[&Path], force: bool) -> Result<()> {
+    if is_pipe(output.path) {
+        return if output.kind == Kind::Mesh { Ok(()) } else { Err(needs_name(output.kind)) };
+    }
+    check_ending(output)?;
+    if let Some(input) = inputs.iter().find(|input| same_file(input, output.path)) {
+        let message = format!("{} is also an input; choose another name", input.display());
+        return Err(Error::Option { name: "--output", message });
+    }
+    check_place(output.path, force)
+}
+
+/// Refuses a place where no file could be written: there already without `--force`, no directory, not writable.
+///
+/// # Errors
+/// [`Error::Write`].
+pub fn check_place(path: &Path, force: bool) -> Result<()> {
+    let fail = |message: String| Err(Error::Write { path: path.to_owned(), message });
+    if path.is_dir() {
+        return fail("is a directory; name a file in it".to_owned());
+    }
+    if path.exists() && !force {
+        return fail("is there already; use --force to replace it".to_owned());
+    }
+    let directory = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    if !directory.is_dir() {
+        return fail(format!("the directory {} does not exist; make it first", directory.display()));
+    }
+    // Only trying tells: permissions, read-only file systems and full quotas look different everywhere.
+    match tempfile::tempfile_in(directory) {
+        Ok(_) => Ok(()),
+        Err(e) => fail(format!("the directory {} cannot be written to: {e}", directory.display())),
+    }
+}
+
+fn check_ending(output: Planned<'_>) -> Result<()> {
+    if output.format.is_some() {
+        return Ok(());
+    }
+    let (base, compressed) = without_compression(output.path);
+    let ending = ending_of(&base);
+    let known = output.kind.endings().contains(&ending.as_str());
+    if known && (!compressed || output.kind.may_be_compressed(&ending)) { Ok(()) } else { Err(needs_name(output.kind)) }
+}
+
+fn needs_name(kind: Kind) -> Error {
+    let endings: Vec<String> = kind.endings().iter().map(|e| format!(".{e}")).collect();
+    let message = format!("name a file that ends in {}", endings.join(", "));
+    let more = match kind {
+        Kind::Mesh => "; .zst or .gz behind it compresses",
+        Kind::Visibility => "; .ply may have .zst or .gz behind it",
+        Kind::Picture => "",
+    };
+    Error::Option { name: "--output", message: message + more }
+}
+
+fn same_file(a: &Path, b: &Path) -> bool {
+    match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => false,
+    }
+}
+
+/// The path without `.zst` or `.gz`, and whether it had one.
+fn without_compression(path: &Path) -> (PathBuf, bool) {
+    let compressed = COMPRESSED.contains(&ending_of(path).as_str());
+    (if compressed { path.with_extension("") } else { path.to_owned() }, compressed)
+}
+
+/// The lower-case ending of a path, empty where it has none.
+pub fn ending_of(path: &Path) -> String {
+    path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
+}
+
+/// The file of level `level` of several: `{}` in the name becomes the number, else `-lod0`, `-lod1`, … stands before
+/// the ending (`part.ply.zst` gives `part-lod0.ply.zst`).
+pub fn level_path(pattern: &Path, level: usize) -> PathBuf {
+    let name = pattern.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    if name.contains("{}") {
+        return pattern.with_file_name(name.replace("{}", &level.to_string()));
+    }
+    let (base, _) = without_compression(Path::new(&name));
+    let stem = base.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    let endings = &name[stem.len()..];
+    pattern.with_file_name(format!("{stem}-lod{level}{endings}"))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    fn mesh(path: &Path) -> Planned<'_> {
+        Planned { path, kind: Kind::Mesh, format: None }
+    }
+
+    #[test]
+    fn levels_are_numbered_before_the_ending() {
+        assert_eq!(level_path(Path::new("a/part.ply"), 0), Path::new("a/part-lod0.ply"));
+        assert_eq!(level_path(Path::new("part.ply.zst"), 2), Path::new("part-lod2.ply.zst"));
+        assert_eq!(level_path(Path::new("v1.2.obj"), 1), Path::new("v1.2-lod1.obj"));
+        assert_eq!(level_path(Path::new("lods/{}.stl"), 3), Path::new("lods/3.stl"));
+    }
+
+    #[test]
+    fn unknown_ending_is_a_usage_error() {
+        for name in ["x", "x.png", "x.glb", "x.zst", ".ply"] {
+            let error = check(mesh(Path::new(name)), &[], false).unwrap_err();
+            assert_eq!(error.exit_code(), 2, "{name}");
+        }
+        let npy = Planned { path: Path::new("x.npy.gz"), kind: Kind::Visibility, format: None };
+        assert_eq!(check(npy, &[], false).unwrap_err().exit_code(), 2);
+    }
+
+    #[test]
+    fn existing_file_needs_force() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("there.ply");
+        std::fs::write(&path, "x").unwrap();
+        assert_eq!(check(mesh(&path), &[], false).unwrap_err().exit_code(), 4);
+        assert!(check(mesh(&path), &[], true).is_ok());
+        assert_eq!(check(mesh(&path), &[&path], true).unwrap_err().exit_code(), 2, "an input is never overwritten");
+    }
+
+    #[test]
+    fn missing_directory_is_an_output_error() {
+        let error = check(mesh(Path::new("no/such/directory/x.ply")), &[], false).unwrap_err();
+        assert_eq!(error.exit_code(), 4);
+    }
+}

@@ -1,0 +1,129 @@
+//! Turns flags into the library's options: the preset gives the defaults, an explicit flag overrides it.
+
+use outsight::backend::BackendKind;
+use outsight::camera::CameraWeights;
+use outsight::error::{Error, Result};
+use outsight::pipeline::{Hidden, Metric};
+use outsight::simplify::{Boundary, PlaneWeight, SimplifyOptions, Topology};
+use outsight::visibility::{Estimator, MeasureOptions, Sides};
+
+use super::collapsing::{CollapseFlags, MetricName, RefitName};
+use super::console::Console;
+use super::flags::{LookingFlags, Preset};
+
+/// Cameras of both presets.
+const CAMERAS: usize = 258;
+/// Pixels along an image's side in the paper.
+const PAPER_RESOLUTION: u32 = 480;
+/// p in V^p: both presets square, as the paper does.
+pub const VISIBILITY_POWER: f64 = 2.0;
+
+/// How visibility is measured under these flags.
+///
+/// # Errors
+/// [`Error::Unavailable`] for a backend or an estimator that this version does not have.
+pub fn measure_options(flags: &LookingFlags) -> Result<MeasureOptions> {
+    let paper = flags.preset == Preset::Paper;
+    let options = MeasureOptions {
+        cameras: flags.cameras.unwrap_or(CAMERAS),
+        camera_weights: flags
+            .camera_weights
+            .map_or(if paper { CameraWeights::Equal } else { CameraWeights::Area }, CameraWeights::from),
+        resolution: flags.resolution.or(paper.then_some(PAPER_RESOLUTION)),
+        backend: flags.backend.map_or(BackendKind::Raster, BackendKind::from),
+        estimator: flags.estimator.map_or(Estimator::Coverage, Estimator::from),
+        sides: flags.sides.map_or(if paper { Sides::One } else { Sides::Better }, Sides::from),
+    };
+    check_available(&options)?;
+    Ok(options)
+}
+
+/// Says where the preset `paper` cannot be followed yet, for commands that measure.
+pub fn announce_stand_ins(flags: &LookingFlags, console: &Console) {
+    if flags.preset == Preset::Paper && flags.estimator.is_none() {
+        console.announce(
+            "--preset paper: the estimator item-buffer is not in this version, coverage stands in; --estimator coverage \
+             silences this",
+        );
+    }
+}
+
+fn check_available(options: &MeasureOptions) -> Result<()> {
+    let unavailable = |message: String| Err(Error::Unavailable { message });
+    match options.backend {
+        BackendKind::Raster => {}
+        other => {
+            let name = other.name();
+            return unavailable(format!("backend {name} is not in this version of Outsight; use --backend raster"));
+        }
+    }
+    let name = match options.estimator {
+        Estimator::Coverage => return Ok(()),
+        Estimator::ItemBuffer => "item-buffer",
+        Estimator::Surface => "surface",
+        Estimator::Hemisphere => "hemisphere",
+    };
+    unavailable(format!("estimator {name} is not in this version of Outsight; use --estimator coverage"))
+}
+
+/// What orders the collapses under these flags.
+///
+/// # Errors
+/// [`Error::Unavailable`] for a metric that this version does not have.
+pub fn metric(flags: &CollapseFlags) -> Result<Metric> {
+    let name = match flags.metric {
+        MetricName::Visibility => return Ok(Metric::Visibility),
+        MetricName::Quadric => return Ok(Metric::Quadric),
+        MetricName::Orientation => "orientation",
+        MetricName::Silhouette => "silhouette",
+    };
+    let message = format!("metric {name} is not in this version of Outsight; use --metric visibility or quadric");
+    Err(Error::Unavailable { message })
+}
+
+/// What happens to hidden triangles; without visibility nothing is known to be hidden, so the default keeps them.
+pub fn hidden(flags: &CollapseFlags, preset: Preset, metric: Metric) -> Hidden {
+    match (flags.hidden, metric, preset) {
+        (Some(explicit), ..) => explicit.into(),
+        (None, Metric::Quadric, _) => Hidden::Keep,
+        (None, Metric::Visibility, Preset::Best) => Hidden::Delete,
+        (None, Metric::Visibility, Preset::Paper) => Hidden::Collapse,
+    }
+}
+
+/// p in V^p under these flags.
+pub fn visibility_power(flags: &CollapseFlags) -> f64 {
+    flags.visibility_power.unwrap_or(VISIBILITY_POWER)
+}
+
+/// The collapser's options under these flags, without targets.
+///
+/// # Errors
+/// [`Error::Unavailable`] for `--refit guarded`.
+pub fn simplify_options(flags: &CollapseFlags, preset: Preset) -> Result<SimplifyOptions> {
+    if flags.refit == RefitName::Guarded {
+        let message = "--refit guarded is not in this version of Outsight; leave it out or use --refit none".to_owned();
+        return Err(Error::Unavailable { message });
+    }
+    let base = match preset {
+        Preset::Best => SimplifyOptions::default(),
+        Preset::Paper => paper_simplify_options(),
+    };
+    Ok(SimplifyOptions {
+        max_error: flags.max_error,
+        plane_weight: flags.weights_by.map_or(base.plane_weight, PlaneWeight::from),
+        topology: flags.topology.map_or(base.topology, Topology::from),
+        boundary: flags.boundary.unwrap_or(base.boundary),
+        ..base
+    })
+}
+
+/// Quadrics as Zhang & Turk print them: every plane alike, nothing for borders, nothing added.
+fn paper_simplify_options() -> SimplifyOptions {
+    SimplifyOptions {
+        plane_weight: PlaneWeight::Uniform,
+        boundary: Boundary::Weight(0.0),
+        regulariser: 0.0,
+        ..SimplifyOptions::default()
+    }
+}
