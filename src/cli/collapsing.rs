@@ -11,62 +11,62 @@ use super::values;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Collapsing")]
 pub struct CollapseFlags {
-    /// Stop before this error, a root mean square distance in model units
-    #[arg(short = 'e', long, value_name = "ERROR", value_parser = values::length, group = "size")]
-    pub max_error: Option<f64>,
-    /// What orders the collapses
+    /// Order collapses by error weighted with visibility, or by error alone
     #[arg(long, value_name = "NAME", default_value = "visibility")]
     pub metric: MetricName,
-    /// What happens to triangles no camera sees [best: delete, paper: collapse, --metric quadric: keep]
+    /// Triangles that no camera sees [best: delete, paper: collapse, --metric quadric: keep]
     #[arg(long, value_name = "HOW")]
     pub hidden: Option<HiddenName>,
-    /// Whether holes may close and pieces vanish [default: free]
+    /// Free: holes may close and pieces vanish, and are counted [default: free]
     #[arg(long, value_name = "HOW")]
     pub topology: Option<TopologyName>,
-    /// Weight that holds open borders, from 0, or `locked` [best: 1, paper: 0]
+    /// How strongly open borders are held: a number from 0, or locked [best: 1, paper: 0]
     #[arg(long, value_name = "WEIGHT", value_parser = boundary)]
     pub boundary: Option<Boundary>,
-    /// How planes of triangles are weighted [best: area, paper: uniform]
+    /// Weigh the planes of triangles [best: area, paper: uniform]
     #[arg(long, value_name = "WHAT")]
     pub weights_by: Option<WeightsByName>,
     /// Exponent p of visibility in the cost [default: 2]
     #[arg(long, value_name = "P", value_parser = values::non_negative)]
     pub visibility_power: Option<f64>,
-    /// Fit vertices once more at the end [default: none]
-    #[arg(long, value_name = "HOW", default_value = "none", hide_default_value = true)]
+    /// Fit vertices once more at the end
+    #[arg(long, value_name = "HOW", default_value = "none", hide = true)]
     pub refit: RefitName,
 }
 
 /// `--metric`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum MetricName {
-    /// Quadric error, weighted by visibility
+    // Quadric error, weighted by visibility
     Visibility,
-    /// Quadric error alone
+    // Quadric error alone
     Quadric,
-    /// Orientation-aware half-edges (not in this version)
+    // Orientation-aware half-edges, not there yet
+    #[value(hide = true)]
     Orientation,
-    /// Silhouette distance (not in this version)
+    // Silhouette distance, not there yet
+    #[value(hide = true)]
     Silhouette,
 }
 
 /// `--refit`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum RefitName {
-    /// Leave them
+    // Leave them
     None,
-    /// Where the picture gains (not in this version)
+    // Where the picture gains, not there yet
+    #[value(hide = true)]
     Guarded,
 }
 
 names! {
     /// `--hidden`.
     HiddenName => Hidden {
-        /// They keep their shape, roughly
+        // They keep their shape, roughly
         Keep => Hidden::Keep,
-        /// They collapse first
+        // They collapse first
         Collapse => Hidden::Collapse,
-        /// They are removed at the start
+        // They are removed at the start
         Delete => Hidden::Delete,
     }
 }
@@ -74,9 +74,9 @@ names! {
 names! {
     /// `--topology`.
     TopologyName => Topology {
-        /// Holes may close and pieces vanish; the result counts what changed
+        // Holes may close and pieces vanish; the result counts what changed
         Free => Topology::Free,
-        /// Only collapses that leave the topology alone
+        // Only collapses that leave the topology alone
         Preserve => Topology::Preserve,
     }
 }
@@ -84,9 +84,9 @@ names! {
 names! {
     /// `--weights-by`.
     WeightsByName => PlaneWeight {
-        /// By the triangle's area
+        // By the triangle's area
         Area => PlaneWeight::Area,
-        /// All alike
+        // All alike
         Uniform => PlaneWeight::Uniform,
     }
 }

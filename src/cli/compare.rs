@@ -26,7 +26,7 @@ pub struct Flags {
     /// Write a PNG contact sheet: reference, test, difference in red
     #[arg(short, long, value_name = "PNG")]
     output: Option<PathBuf>,
-    /// Points on each mesh for the geometric error [default: 10 per triangle of REF, at least 100000]
+    /// Points on each mesh for the distances [default: 10 per triangle of REF]
     #[arg(long, value_name = "N", value_parser = super::values::triangles)]
     samples: Option<usize>,
 }

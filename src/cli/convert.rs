@@ -20,7 +20,7 @@ use super::watch::{Watch, dropped_names};
 pub struct Flags {
     #[command(flatten)]
     input: InputFlags,
-    /// Where the mesh goes: .ply, .obj, .stl or .off, also with .zst or .gz; - is standard output
+    /// Result: .ply, .obj, .stl or .off, also with .zst or .gz; - is standard output
     #[arg(value_name = "OUT")]
     output: PathBuf,
     /// Format of OUT, where its name does not say it

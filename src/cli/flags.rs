@@ -20,25 +20,25 @@ use super::values;
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Everywhere")]
 pub struct GlobalFlags {
-    /// Print one JSON object to standard output, in place of text
+    /// Print one JSON object instead of text
     #[arg(long, global = true)]
     pub json: bool,
-    /// Replace files that are there
+    /// Replace outputs that are there already
     #[arg(long, global = true)]
     pub force: bool,
     /// Treat warnings as errors
     #[arg(long, global = true)]
     pub strict: bool,
-    /// Say nothing but errors and what was asked for as data
+    /// Say nothing but errors, and what --json or - asks for
     #[arg(short, long, global = true, conflicts_with = "verbose")]
     pub quiet: bool,
     /// Say more
     #[arg(short, long, global = true)]
     pub verbose: bool,
-    /// When to show progress
+    /// Show progress on a terminal only, always, or never
     #[arg(long, global = true, value_name = "WHEN", default_value = "auto")]
     pub progress: Show,
-    /// Threads to use; the result is the same for any number [default: all]
+    /// Threads to use; any number gives the same result [default: all]
     #[arg(long, global = true, value_name = "N")]
     pub threads: Option<NonZeroUsize>,
     /// Refuse work that needs more memory than this, as in 2G or 500M
@@ -102,16 +102,16 @@ impl ReadingFlags {
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Looking")]
 pub struct LookingFlags {
-    /// Where the defaults come from: `best` results, or near the paper's text
+    /// Defaults for the best results, or near the text of Zhang & Turk 2002
     #[arg(long, value_name = "NAME", default_value = "best")]
     pub preset: Preset,
-    /// Cameras around the mesh: 6, 18, 66, 258, 1026 or 4098 [default: 258]
+    /// Cameras around the mesh: 6, 18, 66, 258, 1026, 4098 [default: 258]
     #[arg(long, value_name = "N", value_parser = values::cameras)]
     pub cameras: Option<usize>,
-    /// How much each camera counts [best: area, paper: equal]
+    /// Cameras count by the solid angle they own, or alike [best: area, paper: equal]
     #[arg(long, value_name = "HOW")]
     pub camera_weights: Option<CameraWeightsName>,
-    /// Pixels along the side of each image, 16 to 16384 [best: by triangles, paper: 480]
+    /// Pixels along each image's side, 16 to 16384 [best: by triangles, paper: 480]
     #[arg(long, value_name = "W", value_parser = clap::value_parser!(u32).range(16..=16384))]
     pub resolution: Option<u32>,
     /// The machine that looks [default: auto, which is raster]
@@ -120,7 +120,7 @@ pub struct LookingFlags {
     /// What is counted [default: coverage]
     #[arg(long, value_name = "NAME")]
     pub estimator: Option<EstimatorName>,
-    /// Which side of a triangle makes its visibility [best: better, paper: one]
+    /// Visibility of a triangle's front, better side, or both added [best: better, paper: one]
     #[arg(long, value_name = "WHICH")]
     pub sides: Option<SidesName>,
 }
@@ -128,10 +128,10 @@ pub struct LookingFlags {
 /// A set of defaults.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub enum Preset {
-    /// The best results.
+    // The best results.
     #[default]
     Best,
-    /// Nearest to the text of Zhang & Turk 2002.
+    // Nearest to the text of Zhang & Turk 2002.
     Paper,
 }
 
@@ -160,9 +160,9 @@ names! {
 names! {
     /// `--camera-weights`.
     CameraWeightsName => CameraWeights {
-        /// By the solid angle it owns
+        // By the solid angle it owns
         Area => CameraWeights::Area,
-        /// All alike
+        // All alike
         Equal => CameraWeights::Equal,
     }
 }
@@ -170,13 +170,15 @@ names! {
 names! {
     /// `--backend`.
     BackendName => BackendKind {
-        /// Always raster, so that the same input gives the same bytes everywhere
+        // Always raster, so that the same input gives the same bytes everywhere
         Auto => BackendKind::Raster,
-        /// CPU rasteriser, always there
+        // CPU rasteriser, always there
         Raster => BackendKind::Raster,
-        /// Ray casting with Embree (not in this version)
+        // Ray casting with Embree, not there yet
+        #[value(hide = true)]
         Embree => BackendKind::Embree,
-        /// GPU rasteriser (not in this version)
+        // GPU rasteriser, not there yet
+        #[value(hide = true)]
         Gpu => BackendKind::Gpu,
     }
 }
@@ -184,13 +186,16 @@ names! {
 names! {
     /// `--estimator`.
     EstimatorName => Estimator {
-        /// Weighted pixels: unbiased at any triangle size
+        // Weighted pixels: unbiased at any triangle size
         Coverage => Estimator::Coverage,
-        /// The paper's: a camera sees a triangle or not (not in this version)
+        // The paper's: a camera sees a triangle or not, not there yet
+        #[value(hide = true)]
         ItemBuffer => Estimator::ItemBuffer,
-        /// Rays from the triangle to the cameras (not in this version)
+        // Rays from the triangle to the cameras, not there yet
+        #[value(hide = true)]
         Surface => Estimator::Surface,
-        /// Cosine-distributed rays (not in this version)
+        // Cosine-distributed rays, not there yet
+        #[value(hide = true)]
         Hemisphere => Estimator::Hemisphere,
     }
 }
@@ -198,11 +203,11 @@ names! {
 names! {
     /// `--sides`.
     SidesName => Sides {
-        /// The front
+        // The front
         One => Sides::One,
-        /// The better one
+        // The better one
         Better => Sides::Better,
-        /// Both added
+        // Both added
         Sum => Sides::Sum,
     }
 }
@@ -210,9 +215,9 @@ names! {
 names! {
     /// `--colour-map`.
     ColourMapName => ColourMap {
-        /// White, red, yellow, green, as in the paper
+        // White, red, yellow, green, as in the paper
         Paper => ColourMap::Paper,
-        /// Dark blue to yellow, readable for every eye
+        // Dark blue to yellow, readable for every eye
         Cividis => ColourMap::Cividis,
     }
 }

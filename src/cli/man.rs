@@ -13,7 +13,7 @@ use super::outputs;
 
 #[derive(Debug, Args)]
 pub struct Flags {
-    /// Write one page per command into this directory, in place of one page to standard output
+    /// Write one page per command into this directory
     #[arg(long, value_name = "DIR")]
     dir: Option<PathBuf>,
 }

@@ -20,10 +20,10 @@ use super::watch::Watch;
 pub struct Flags {
     #[command(flatten)]
     input: InputFlags,
-    /// Write the visibility of each triangle: .ply with heat colours, .npy or .csv
+    /// Visibility of each triangle: .ply with heat colours, .npy or .csv
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Heat colours of a .ply output
+    /// Heat colours of a .ply: as in the paper, or readable for every eye
     #[arg(long, value_name = "NAME", default_value = "paper")]
     colour_map: ColourMapName,
     #[command(flatten)]

@@ -60,7 +60,7 @@ enum Command {
     #[command(after_help = help::MEASURE)]
     Measure(measure::Flags),
     /// Reduce the triangles of a mesh, first where nobody looks
-    #[command(after_help = help::SIMPLIFY)]
+    #[command(after_help = help::SIMPLIFY, override_usage = help::SIMPLIFY_USAGE)]
     Simplify(simplify::Flags),
     /// Say how far meshes differ from a reference, in pictures and in space
     #[command(after_help = help::COMPARE)]

@@ -96,7 +96,7 @@ pub fn visibility_power(flags: &CollapseFlags) -> f64 {
     flags.visibility_power.unwrap_or(VISIBILITY_POWER)
 }
 
-/// The collapser's options under these flags, without targets.
+/// The collapser's options under these flags, without targets and error bound.
 ///
 /// # Errors
 /// [`Error::Unavailable`] for `--refit guarded`.
@@ -110,7 +110,6 @@ pub fn simplify_options(flags: &CollapseFlags, preset: Preset) -> Result<Simplif
         Preset::Paper => paper_simplify_options(),
     };
     Ok(SimplifyOptions {
-        max_error: flags.max_error,
         plane_weight: flags.weights_by.map_or(base.plane_weight, PlaneWeight::from),
         topology: flags.topology.map_or(base.topology, Topology::from),
         boundary: flags.boundary.unwrap_or(base.boundary),

@@ -16,12 +16,12 @@ const TICK: Duration = Duration::from_millis(200);
 /// When progress is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
 pub enum Show {
-    /// Only on a terminal.
+    // Only on a terminal.
     #[default]
     Auto,
-    /// Also in a pipe or a file, as lines.
+    // Also in a pipe or a file, as lines.
     Always,
-    /// Never.
+    // Never.
     Never,
 }
 

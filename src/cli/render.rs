@@ -22,17 +22,17 @@ pub struct Flags {
     /// Where the picture goes
     #[arg(short, long, value_name = "PNG")]
     output: PathBuf,
-    /// How triangles are coloured
+    /// Flat triangles under a head light, or visibility as heat colours
     #[arg(long, value_name = "HOW", default_value = "flat")]
     style: StyleName,
-    /// Where the camera stands, seen from the mesh
+    /// Direction from the mesh to the camera
     #[arg(long, value_name = "X,Y,Z", default_value = "1,-2,1", allow_hyphen_values = true)]
     #[arg(value_parser = values::direction)]
     camera: [f64; 3],
     /// Pixels along the side
     #[arg(long, value_name = "W", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(16..=16384))]
     size: u32,
-    /// Heat colours
+    /// Heat colours: as in the paper, or readable for every eye
     #[arg(long, value_name = "NAME", default_value = "paper")]
     colour_map: ColourMapName,
     /// Draw the colour scale, the default for --style heat
@@ -48,9 +48,9 @@ pub struct Flags {
 names! {
     /// `--style`.
     StyleName => Style {
-        /// Flat triangles under a head light
+        // Flat triangles under a head light
         Flat => Style::Flat,
-        /// Coloured by visibility
+        // Coloured by visibility
         Heat => Style::Heat,
     }
 }

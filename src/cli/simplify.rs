@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{ArgGroup, Args};
 use outsight::Error;
 use outsight::pipeline::{Hidden, LevelRequest, Metric, SimplifyReport, SimplifyRequest, run_simplify};
-use outsight::simplify::Target;
+use outsight::simplify::{SimplifyOptions, Target};
 use serde::Serialize;
 
 use super::collapsing::CollapseFlags;
@@ -25,7 +25,7 @@ use super::watch::Watch;
 pub struct Flags {
     #[command(flatten)]
     input: InputFlags,
-    /// Where the result goes: .ply, .obj, .stl or .off, also with .zst or .gz; - is standard output
+    /// Result: .ply, .obj, .stl or .off, also with .zst or .gz; - is standard output
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Format of the output, where its name does not say it
@@ -37,7 +37,10 @@ pub struct Flags {
     /// Stop at this share of the triangles, in (0, 1]
     #[arg(short, long, value_name = "RATIO", value_parser = values::ratio, group = "size")]
     ratio: Option<f64>,
-    /// Several results in one run, each smaller than the one before: ratios or counts, as in 0.5,0.25,5000
+    /// Stop before this root mean square distance, in model units
+    #[arg(short = 'e', long, value_name = "ERROR", value_parser = values::length, group = "size")]
+    max_error: Option<f64>,
+    /// Several results in one run, from large to small, as in 0.5,0.25,5000
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = values::level_size, group = "size")]
     #[arg(conflicts_with_all = ["triangles", "ratio"])]
     lods: Vec<LevelSize>,
@@ -81,7 +84,7 @@ fn request(flags: &Flags, console: &Console) -> outsight::Result<SimplifyRequest
         measure: presets::measure_options(&flags.looking)?,
         hidden: presets::hidden(&flags.collapse, preset, metric),
         visibility_power: presets::visibility_power(&flags.collapse),
-        simplify: presets::simplify_options(&flags.collapse, preset)?,
+        simplify: SimplifyOptions { max_error: flags.max_error, ..presets::simplify_options(&flags.collapse, preset)? },
         levels: levels(flags),
         format: flags.to.map(Into::into),
         force: console.global.force,
