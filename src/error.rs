@@ -28,6 +28,10 @@ pub enum Error {
         message: String,
     },
 
+    /// The surroundings: whoever read standard output went away; programs end quietly then.
+    #[error("standard output was closed before the end")]
+    ClosedPipe,
+
     /// The input: a file is not what its format says.
     #[error("{place}: {message}")]
     Parse {
@@ -87,10 +91,11 @@ pub enum Error {
 
 impl Error {
     /// The exit code of the command line for this error: 2 usage, 3 input, 4 output, 5 limit, 6 not available,
-    /// 70 a bug, 130 interrupted.
+    /// 70 a bug, 130 interrupted; 0 where the reader of standard output had enough.
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
+            Self::ClosedPipe => 0,
             Self::Option { .. } => 2,
             Self::Read { .. } | Self::Parse { .. } | Self::Mesh { .. } => 3,
             Self::Write { .. } => 4,

@@ -12,10 +12,9 @@ pub struct Aabb {
 impl Aabb {
     /// The smallest box around `points`; `None` for no points.
     #[must_use]
-    pub fn around(points: &[DVec3]) -> Option<Self> {
-        let (&first, rest) = points.split_first()?;
-        let start = Self { min: first, max: first };
-        Some(rest.iter().fold(start, |b, &p| Self { min: b.min.min(p), max: b.max.max(p) }))
+    pub fn around(points: impl IntoIterator<Item = DVec3>) -> Option<Self> {
+        let boxes = points.into_iter().map(|p| Self { min: p, max: p });
+        boxes.reduce(|a, b| Self { min: a.min.min(b.min), max: a.max.max(b.max) })
     }
 
     /// Centre of the box.

@@ -1,8 +1,12 @@
 //! Geometry of single triangles and boxes, without any notion of a mesh.
 
 mod bounds;
+mod dodecahedron;
+mod octahedron;
 
 pub use bounds::Aabb;
+pub use dodecahedron::dodecahedron_axes;
+pub use octahedron::OctahedralSphere;
 
 use glam::DVec3;
 

@@ -1,42 +1,44 @@
 //! Mesh files, in and out: PLY, OBJ, STL, OFF, each also compressed (`.zst`, `.gz`) or through a pipe (`-`).
 //!
-//! One file a format, its parser apart from files; what every format shares is here.
+//! One file a format. Every reader is a function of bytes, [`parse`], apart from the file that they came from; it
+//! ends in a [`soup`], which becomes a mesh in one place. All readers are our own: they name the line or byte of what
+//! is wrong and they allocate by what the file holds, never by what it promises. The crates that were tried give no
+//! line numbers (`tobj`), make triangles of lines (`tobj`), or lose solids (`stl_io`); polygons go to `earcut`.
+//!
+//! Reading never guesses against the file's name: where the content is plainly another format, that is an error
+//! which says so.
+
+mod atomic;
+mod encode;
+mod fault;
+mod format;
+mod obj;
+mod off;
+mod ply;
+mod polygon;
+mod soup;
+mod source;
+mod stl;
+mod table;
+mod text;
 
 use std::path::Path;
 
-use crate::error::Result;
+pub use atomic::{check_target, write_atomic};
+pub use encode::{TriangleAttributes, WriteOptions, write};
+pub use format::Format;
+pub use table::{write_npy_f32, write_npy_f64, write_visibility_csv};
+
+use crate::error::{Error, Result};
 use crate::mesh::{SetAside, TriMesh};
-
-/// A mesh file format.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
-    /// Polygon file format, ASCII and binary of both byte orders; written binary little-endian.
-    Ply,
-    /// Wavefront OBJ.
-    Obj,
-    /// STL, ASCII and binary; written binary.
-    Stl,
-    /// Object file format.
-    Off,
-}
-
-impl Format {
-    /// The ending of its files.
-    #[must_use]
-    pub fn extension(self) -> &'static str {
-        match self {
-            Self::Ply => "ply",
-            Self::Obj => "obj",
-            Self::Stl => "stl",
-            Self::Off => "off",
-        }
-    }
-}
+use fault::Fault;
+use format::FileName;
+use soup::Soup;
 
 /// Something a file held that Outsight cannot carry over yet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Dropped {
-    /// Vertex or corner normals.
+    /// Vertex or corner normals. The facet normals of STL do not count: they follow from the triangles.
     Normals,
     /// Texture coordinates.
     TextureCoordinates,
@@ -44,12 +46,28 @@ pub enum Dropped {
     Colours,
     /// Materials and material files.
     Materials,
-    /// Names of parts, groups, solids.
+    /// The division into parts (objects, groups, solids), where there is more than one.
     Parts,
     /// Points or lines that belong to no triangle.
     PointsAndLines,
     /// Further vertex or triangle properties.
     OtherProperties,
+}
+
+impl Dropped {
+    /// Name in warnings and in JSON: `texture coordinates`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Normals => "normals",
+            Self::TextureCoordinates => "texture coordinates",
+            Self::Colours => "colours",
+            Self::Materials => "materials",
+            Self::Parts => "parts",
+            Self::PointsAndLines => "points and lines",
+            Self::OtherProperties => "other properties",
+        }
+    }
 }
 
 /// How a mesh is read. `Default`: format by extension, weld only where the format has no indices.
@@ -59,7 +77,8 @@ pub struct ReadOptions {
     pub format: Option<Format>,
     /// Merge vertices at exactly equal positions, whatever the format.
     pub weld: bool,
-    /// Refuse input that needs more memory than this, in bytes.
+    /// Refuse input that needs more memory than this, in bytes: the unpacked file plus the mesh made of it. `None`
+    /// sets no limit, except that a compressed file may not unpack to more than 64 MiB plus 200 times its size.
     pub memory_limit: Option<u64>,
 }
 
@@ -70,63 +89,67 @@ pub struct Loaded {
     pub mesh: TriMesh,
     /// Its format.
     pub format: Format,
-    /// What the file held beyond triangles.
+    /// What the file held beyond triangles, each once, in the order of [`Dropped`].
     pub dropped: Vec<Dropped>,
-    /// Triangles that were set aside, as numbers among the file's triangles.
+    /// Triangles that were set aside, as numbers among the file's triangles; a polygon of n corners counts as its
+    /// n - 2 triangles.
     pub set_aside: SetAside,
     /// Vertices merged because their positions are equal; `None` where nothing was welded.
     pub welded: Option<usize>,
 }
 
-/// What is written beside the triangles of a mesh.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct TriangleAttributes<'a> {
-    /// Visibility per triangle (PLY property `visibility`).
-    pub visibility: Option<&'a [f64]>,
-    /// Colour per triangle (PLY properties `red`, `green`, `blue`).
-    pub colours: Option<&'a [[u8; 3]]>,
-}
-
 /// Reads a mesh; `-` is standard input.
 ///
 /// # Errors
-/// [`crate::Error::Read`], [`crate::Error::Parse`], [`crate::Error::Mesh`], [`crate::Error::Limit`].
-pub fn read(_path: &Path, _options: &ReadOptions) -> Result<Loaded> {
-    Err(crate::Error::Unavailable { message: "to come".to_owned() })
+/// [`Error::Read`], [`Error::Parse`], [`Error::Mesh`], [`Error::Limit`]; [`Error::Unavailable`] for a `.zst` file
+/// where the feature `zstd` is off.
+pub fn read(path: &Path, options: &ReadOptions) -> Result<Loaded> {
+    let name = FileName::of(path);
+    if options.format.is_none() && name.format.is_none() && !name.is_pipe {
+        return Err(unknown_extension(&name));
+    }
+    let bytes = source::read_all(path, &name, options.memory_limit)?;
+    parse_named(&bytes, &name, options)
 }
 
-/// How a mesh is written.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct WriteOptions {
-    /// Replace a file that is there.
-    pub force: bool,
-    /// The format, where the extension does not say it.
-    pub format: Option<Format>,
-}
-
-/// Writes a mesh; `-` is standard output.
+/// Reads a mesh from the bytes of a file that is not compressed. `name` gives the format by its extension, as a path
+/// would, and stands in messages.
 ///
 /// # Errors
-/// [`crate::Error::Write`].
-pub fn write(
-    _path: &Path,
-    _mesh: &TriMesh,
-    _attributes: &TriangleAttributes<'_>,
-    _options: &WriteOptions,
-) -> Result<()> {
-    Err(crate::Error::Unavailable { message: "to come".to_owned() })
+/// As [`read`].
+pub fn parse(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Loaded> {
+    parse_named(bytes, &FileName::of(Path::new(name)), options)
 }
 
-/// Writes a file beside `path` and renames it.
-///
-/// # Errors
-/// [`crate::Error::Write`].
-pub fn write_atomic(
-    path: &Path,
-    _force: bool,
-    write: impl FnOnce(&mut dyn std::io::Write) -> std::io::Result<()>,
-) -> Result<()> {
-    let fail = |e: std::io::Error| crate::Error::Write { path: path.to_owned(), message: e.to_string() };
-    let mut file = std::fs::File::create(path).map_err(fail)?;
-    write(&mut file).map_err(fail)
+fn parse_named(bytes: &[u8], name: &FileName, options: &ReadOptions) -> Result<Loaded> {
+    let format = format::decide(bytes, name, options.format)?;
+    let soup = match format {
+        Format::Ply => ply::parse(bytes),
+        Format::Obj => obj::parse(bytes),
+        Format::Stl => stl::parse(bytes),
+        Format::Off => off::parse(bytes),
+    }
+    .map_err(|fault| fault.named(&name.shown))?;
+    check_memory(bytes.len(), &soup, name, options.memory_limit)?;
+    soup.into_loaded(format, options.weld).map_err(|fault| fault.named(&name.shown))
+}
+
+fn check_memory(file_bytes: usize, soup: &Soup, name: &FileName, limit: Option<u64>) -> Result<()> {
+    let needed = file_bytes as u64 + soup.bytes();
+    match limit {
+        Some(limit) if needed > limit => Err(Error::Limit {
+            message: format!(
+                "{}: reading needs {needed} bytes, more than the memory limit of {limit}; raise --memory-limit",
+                name.shown
+            ),
+        }),
+        _ => Ok(()),
+    }
+}
+
+fn unknown_extension(name: &FileName) -> Error {
+    Fault::new(
+        "the extension names no mesh format; Outsight reads .ply, .obj, .stl and .off, each also with .gz or .zst",
+    )
+    .named(&name.shown)
 }

@@ -4,7 +4,14 @@
 //! checking: every index is in range, no triangle repeats a vertex, every coordinate is finite, and there is at least
 //! one triangle. What a file holds beyond that is set aside, and counted, by [`TriMesh::from_triangles`].
 
+mod rings;
+
+pub use rings::VertexTriangles;
+mod weld;
+
+pub use weld::{Welder, weld};
 pub mod adjacency;
+pub mod shapes;
 
 use glam::DVec3;
 
@@ -191,10 +198,11 @@ impl TriMesh {
         self.triangles[triangle.0 as usize].map(|v| self.positions[v as usize])
     }
 
-    /// Box around all vertices, those that no triangle uses included.
+    /// Box around all triangles; vertices that no triangle uses do not count.
     #[must_use]
     pub fn bounds(&self) -> Aabb {
-        Aabb::around(&self.positions).expect("a mesh has at least one triangle, so it has vertices")
+        let corners = self.triangles.iter().flatten().map(|&v| self.positions[v as usize]);
+        Aabb::around(corners).expect("a mesh has at least one triangle")
     }
 
     /// Its vertices and triangles.

@@ -4,9 +4,29 @@
 //!
 //! Sources: Garland & Heckbert 1997 (quadrics); Zhang & Turk 2002, section 5 (weighted priority, unweighted placement).
 
-use crate::error::Result;
+mod collapser;
+mod frame;
+mod guards;
+mod level;
+pub mod metric;
+mod options;
+mod placement;
+pub mod quadric;
+mod queue;
+mod ring;
+mod surface;
+
+pub use collapser::EdgeCollapser;
+pub use options::SimplifyOptions;
+
+use crate::error::{Error, Result};
 use crate::mesh::TriMesh;
+use crate::mesh::adjacency::{CornerLists, Edges, TopologyCounts};
 use crate::progress::Progress;
+use frame::Frame;
+use level::{Origin, level_of};
+use metric::QuadricMetric;
+use surface::Surface;
 
 /// When to stop. Several given: the first one reached stops, and the result says which.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,26 +64,6 @@ pub enum Boundary {
     Weight(f64),
     /// Border vertices never move and never vanish.
     Locked,
-}
-
-/// What one run of the simplifier does. `Default` is the preset `best`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SimplifyOptions {
-    /// One level of detail per target, each at most as large as the one before; empty only with `max_error`.
-    pub targets: Vec<Target>,
-    /// Stop before the root mean square distance of a collapse passes this, in model units; `None` for no bound.
-    pub max_error: Option<f64>,
-    /// Weight of a triangle's plane.
-    pub plane_weight: PlaneWeight,
-    /// What may happen to the topology.
-    pub topology: Topology,
-    /// What holds borders.
-    pub boundary: Boundary,
-    /// Smallest cosine between a triangle's normal before and after a collapse, -1 to 1.
-    pub min_normal_cosine: f64,
-    /// Strength of the pull toward the original vertices, as a share of the plane weight; makes placement on
-    /// near-planar surface unique. 0 for none.
-    pub regulariser: f64,
 }
 
 /// Why a level ended where it did.
@@ -121,24 +121,60 @@ pub struct Level {
 /// [`crate::Error::Option`] for an option outside its range, [`crate::Error::ShapeMismatch`] if `importance` is not one
 /// number per triangle, [`crate::Error::Cancelled`].
 pub fn simplify(
-    _mesh: &TriMesh,
-    _importance: Option<&[f64]>,
-    _options: &SimplifyOptions,
-    _progress: &dyn Progress,
+    mesh: &TriMesh,
+    importance: Option<&[f64]>,
+    options: &SimplifyOptions,
+    progress: &dyn Progress,
 ) -> Result<Vec<Level>> {
-    Ok(Vec::new())
+    options.check()?;
+    let targets = options.counts(mesh.triangle_count())?;
+    check_mesh(mesh, importance)?;
+
+    // Look at the input.
+    let lists = CornerLists::of(mesh);
+    let edges = Edges::of(mesh, &lists);
+    let frame = Frame::of(mesh, &lists);
+    let origin = Origin { mesh, frame, topology: TopologyCounts::of(mesh, &lists, &edges) };
+
+    // Prepare the queue.
+    let surface = Surface::new(mesh, &frame, lists, &edges);
+    let metric = QuadricMetric::new(&surface, &edges, importance, options);
+    let mut collapser = EdgeCollapser::new(surface, metric, &edges, &frame, options);
+    drop(edges);
+
+    // Collapse from level to level.
+    let last = targets.last().copied().unwrap_or(1);
+    let total = mesh.triangle_count().saturating_sub(last) as u64;
+    let mut levels = Vec::with_capacity(targets.len().max(1));
+    for target in targets.iter().copied().map(Some).chain(targets.is_empty().then_some(None)) {
+        let stop = collapser.run(target.unwrap_or(1), progress, total)?;
+        levels.push(level_of(&collapser, &origin, target, stop)?);
+    }
+    progress.report("simplify", total, total);
+    Ok(levels)
 }
 
-impl Default for SimplifyOptions {
-    fn default() -> Self {
-        Self {
-            targets: Vec::new(),
-            max_error: None,
-            plane_weight: PlaneWeight::Area,
-            topology: Topology::Free,
-            boundary: Boundary::Weight(1.0),
-            min_normal_cosine: 0.2,
-            regulariser: 1e-6,
+/// Largest importance: sums of larger ones could overflow.
+const MAX_IMPORTANCE: f64 = 1e100;
+
+fn check_mesh(mesh: &TriMesh, importance: Option<&[f64]>) -> Result<()> {
+    let triangles = mesh.triangle_count();
+    if triangles > (u32::MAX / 3) as usize {
+        let message =
+            format!("{triangles} triangles are more than the 1431655765 that one run can simplify; split the mesh");
+        return Err(Error::Limit { message });
+    }
+    let Some(importance) = importance else {
+        return Ok(());
+    };
+    if importance.len() != triangles {
+        return Err(Error::ShapeMismatch { what: "importance", got: importance.len(), expected: triangles });
+    }
+    match importance.iter().position(|i| !(0.0..=MAX_IMPORTANCE).contains(i)) {
+        None => Ok(()),
+        Some(t) => {
+            let message = format!("triangle {t} has {}; it must be a number from 0 to 1e100", importance[t]);
+            Err(Error::Option { name: "importance", message })
         }
     }
 }

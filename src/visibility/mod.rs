@@ -1,96 +1,195 @@
-//! How visible each triangle is.
+//! How visible each triangle is: the share of camera directions that see it, each counted by its cosine.
 //!
-//! Source: Zhang & Turk 2002, eqs. (3.1), (3.2) and (4.3).
+//! Sources: Zhang & Turk 2002, eqs. (3.1) V of a point, (3.2) V of a mesh, (4.3) V from cameras. The estimator
+//! `coverage` replaces their F(t, v), seen or not, by the share of the triangle's image that is seen; the cosines of
+//! eq. (4.3) then cancel, and counting pixels is enough.
 
-use crate::backend::BackendKind;
-use crate::camera::CameraWeights;
+mod coverage;
+mod hidden;
+mod importance;
+mod options;
+mod pool;
+
+pub use coverage::CoverageCounts;
+pub use hidden::hidden_triangles;
+pub use importance::{Hidden, importance};
+pub use options::{Estimator, MeasureOptions, Sides};
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::backend::ItemBuffers;
+use crate::camera::{CameraSphere, Frame, Window};
 use crate::error::Result;
-use crate::mesh::TriMesh;
+use crate::mesh::{TriMesh, TriangleId};
 use crate::progress::Progress;
-
-/// What is counted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Estimator {
-    /// Pixels, weighted: unbiased at any triangle size.
-    #[default]
-    Coverage,
-    /// The paper's: a camera sees a triangle or it does not.
-    ItemBuffer,
-    /// Rays from points on the triangle to the cameras.
-    Surface,
-    /// Cosine-distributed rays.
-    Hemisphere,
-}
-
-/// Which side of a triangle makes its visibility.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Sides {
-    /// The front.
-    One,
-    /// The better one.
-    #[default]
-    Better,
-    /// Both added, at most 1.
-    Sum,
-}
-
-/// How visibility is measured. `Default` is the preset `best`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MeasureOptions {
-    /// Number of octahedral cameras: 6, 18, 66, 258, 1026 or 4098.
-    pub cameras: usize,
-    /// How much each camera counts.
-    pub camera_weights: CameraWeights,
-    /// Pixels along an image's side, 16 to 16384; `None` chooses by the number of triangles.
-    pub resolution: Option<u32>,
-    /// Who looks.
-    pub backend: BackendKind,
-    /// What is counted.
-    pub estimator: Estimator,
-    /// Which side counts.
-    pub sides: Sides,
-}
+use crate::raster::Scene;
 
 /// The visibility of every triangle of a mesh.
-#[derive(Debug, Clone)]
-pub struct Visibility {}
+#[derive(Debug, Clone, PartialEq)]
+pub struct Visibility {
+    front: Vec<f64>,
+    back: Vec<f64>,
+    per_triangle: Vec<f64>,
+    seen: Vec<bool>,
+    of_mesh: f64,
+    of_mesh_sides: f64,
+    resolution: u32,
+    cameras: usize,
+}
 
 impl Visibility {
     /// One number per triangle, 0 to 1, under the rule for sides: clamped, and pooled where triangles are too small.
     #[must_use]
     pub fn per_triangle(&self) -> &[f64] {
-        &[]
+        &self.per_triangle
     }
 
-    /// Visibility of the mesh, eq. (3.2): one-sided, area-weighted, unclamped.
+    /// V of each triangle's front side as counted: neither clamped nor pooled, so that it may pass 1 on tiny triangles.
+    #[must_use]
+    pub fn front(&self) -> &[f64] {
+        &self.front
+    }
+
+    /// V of each triangle's back side as counted.
+    #[must_use]
+    pub fn back(&self) -> &[f64] {
+        &self.back
+    }
+
+    /// Whether any camera sees the triangle, or the neighbourhood it was pooled with, from either side.
+    #[must_use]
+    pub fn seen(&self) -> &[bool] {
+        &self.seen
+    }
+
+    /// Visibility of the mesh: one-sided, area-weighted, unclamped. Source: Zhang & Turk 2002, eq. (3.2).
     #[must_use]
     pub fn of_mesh(&self) -> f64 {
-        0.0
+        self.of_mesh
     }
 
     /// The same mean under the rule for sides.
     #[must_use]
     pub fn of_mesh_sides(&self) -> f64 {
-        0.0
+        self.of_mesh_sides
     }
 
-    /// Triangles that no camera sees from either side.
+    /// Number of triangles that no camera sees from either side; see [`Visibility::seen`].
     #[must_use]
     pub fn never_seen(&self) -> usize {
-        0
+        self.seen.iter().filter(|&&s| !s).count()
     }
 
     /// Pixels along an image's side that were used.
     #[must_use]
     pub fn resolution(&self) -> u32 {
-        0
+        self.resolution
+    }
+
+    /// Number of cameras that looked.
+    #[must_use]
+    pub fn cameras(&self) -> usize {
+        self.cameras
     }
 }
 
 /// Looks at `mesh` from all cameras.
 ///
 /// # Errors
-/// [`crate::Error::Option`], [`crate::Error::Unavailable`], [`crate::Error::Cancelled`].
-pub fn measure(_mesh: &TriMesh, _options: &MeasureOptions, _progress: &dyn Progress) -> Result<Visibility> {
-    Ok(Visibility {})
+/// [`crate::Error::Option`] for a resolution or a number of cameras outside its range, [`crate::Error::Unavailable`] for
+/// a backend or estimator that is not there, [`crate::Error::Limit`] if it does not fit the memory limit,
+/// [`crate::Error::Cancelled`].
+///
+/// # Examples
+/// ```
+/// use outsight::mesh::TriMesh;
+/// use outsight::progress::Silent;
+/// use outsight::visibility::{measure, MeasureOptions};
+///
+/// let corners = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0., 0., 1.]].map(Into::into).to_vec();
+/// let tetrahedron = TriMesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])?;
+/// let visibility = measure(&tetrahedron, &MeasureOptions::default(), &Silent)?;
+/// assert!((visibility.of_mesh() - 1.0).abs() < 1e-2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn measure(mesh: &TriMesh, options: &MeasureOptions, progress: &dyn Progress) -> Result<Visibility> {
+    options.check()?;
+    let cameras = CameraSphere::octahedral(options.cameras, options.camera_weights)?;
+    let scene = Scene::new(Frame::of(mesh).unit_copy(mesh));
+    measure_with(&scene, mesh, &cameras, options, progress)
+}
+
+/// Like [`measure`], with a backend and cameras of the caller's.
+///
+/// `backend` must draw the mesh in its own [`Frame`]; of `options`, the resolution, the sides and the memory limit count.
+///
+/// # Errors
+/// As [`measure`].
+pub fn measure_with<B: ItemBuffers>(
+    backend: &B,
+    mesh: &TriMesh,
+    cameras: &CameraSphere,
+    options: &MeasureOptions,
+    progress: &dyn Progress,
+) -> Result<Visibility> {
+    let window = Window::around_sphere(options.resolution_for(mesh.triangle_count()));
+    let counts = CoverageCounts::of(backend, mesh.triangle_count(), cameras, window, options.memory_limit, progress)?;
+    progress.check()?;
+    let shapes = Shapes::of(mesh, &Frame::of(mesh));
+    Ok(from_coverage(&counts, mesh, &shapes, cameras, options.sides))
+}
+
+/// Areas (unit-sphere units) and unit normals of all triangles; area 0 marks degenerate ones.
+struct Shapes {
+    areas: Vec<f64>,
+    normals: Vec<[f32; 3]>,
+}
+
+impl Shapes {
+    fn of(mesh: &TriMesh, frame: &Frame) -> Self {
+        let shape = |t: u32| {
+            let (area, normal) = frame.area_and_normal(mesh, TriangleId(t)).unwrap_or((0.0, DVec3::ZERO));
+            (area, normal.as_vec3().to_array())
+        };
+        let (areas, normals) = (0..mesh.triangle_count() as u32).into_par_iter().map(shape).unzip();
+        Self { areas, normals }
+    }
+
+    fn normal(&self, t: usize) -> DVec3 {
+        DVec3::from_array(self.normals[t].map(f64::from))
+    }
+}
+
+fn from_coverage(
+    counts: &CoverageCounts,
+    mesh: &TriMesh,
+    shapes: &Shapes,
+    cameras: &CameraSphere,
+    sides: Sides,
+) -> Visibility {
+    let (front, back) = counts.visibilities(shapes, cameras);
+    debug_assert!(counts.identity_holds(&front, &back, shapes, cameras));
+    let pools = pool::pool_small(mesh, shapes, counts.smallest_area(cameras), [&front, &back]);
+    let value = |t: usize| sides.combine(pools.front(t, &front), pools.back(t, &back));
+    let per_triangle = (0..front.len()).map(|t| value(t).clamp(0.0, 1.0)).collect();
+    let seen = (0..front.len()).map(|t| pools.front(t, &front) > 0.0 || pools.back(t, &back) > 0.0).collect();
+    let raw_sides = |t: usize| sides.combine(front[t], back[t]);
+    Visibility {
+        of_mesh: area_mean(&shapes.areas, |t| front[t]),
+        of_mesh_sides: area_mean(&shapes.areas, raw_sides),
+        per_triangle,
+        seen,
+        resolution: counts.window().width,
+        cameras: cameras.count(),
+        front,
+        back,
+    }
+}
+
+/// Mean of a value over the surface; sums run in index order.
+fn area_mean(areas: &[f64], value: impl Fn(usize) -> f64) -> f64 {
+    let total: f64 = areas.iter().sum();
+    let weighted: f64 = areas.iter().enumerate().map(|(t, area)| area * value(t)).sum();
+    if total > 0.0 { weighted / total } else { 0.0 }
 }

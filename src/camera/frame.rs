@@ -1,0 +1,72 @@
+use glam::DVec3;
+
+use crate::geom;
+use crate::mesh::{TriMesh, TriangleId};
+
+/// The sphere that cameras look at: centre of a mesh's box and distance of its farthest vertex.
+///
+/// Several meshes can be seen in one frame (an original and its simplified forms).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Frame {
+    /// Centre of the box, in model units.
+    pub centre: DVec3,
+    /// Largest distance of a vertex from the centre, in model units.
+    pub radius: f64,
+}
+
+/// Triangles below this area, in unit-sphere units, are not seen and hide nothing.
+const DEGENERATE_AREA: f64 = 1e-14;
+
+/// A mesh in the unit sphere, narrowed to `f32`: what rasters and rays work on.
+#[derive(Debug, Clone)]
+pub struct UnitMesh {
+    /// Vertex positions; those of the framed mesh itself lie in the unit ball.
+    pub positions: Vec<[f32; 3]>,
+    /// Triangles that can be seen, with their numbers in the mesh; degenerate ones are left out.
+    pub triangles: Vec<([u32; 3], TriangleId)>,
+    /// Largest distance of a vertex in use from the centre; 1 up to rounding for the framed mesh itself.
+    pub extent: f64,
+}
+
+impl Frame {
+    /// The frame of a mesh; vertices that no triangle uses do not count.
+    #[must_use]
+    pub fn of(mesh: &TriMesh) -> Self {
+        let centre = mesh.bounds().centre();
+        let farthest = corners_of_all(mesh).map(|p| p.distance_squared(centre)).fold(0.0, f64::max);
+        // A mesh whose triangles all shrank to one point still needs a finite frame.
+        let radius = if farthest > 0.0 { farthest.sqrt() } else { 1.0 };
+        Self { centre, radius }
+    }
+
+    /// `p` in unit-sphere coordinates.
+    #[must_use]
+    pub fn to_unit(&self, p: DVec3) -> DVec3 {
+        (p - self.centre) / self.radius
+    }
+
+    /// The mesh as seen in this frame.
+    #[must_use]
+    pub fn unit_copy(&self, mesh: &TriMesh) -> UnitMesh {
+        let unit = |p: DVec3| self.to_unit(p);
+        let triangles = (0..).map(TriangleId).zip(mesh.triangles());
+        let visible = triangles.filter(|&(id, _)| self.area_and_normal(mesh, id).is_some());
+        UnitMesh {
+            positions: mesh.positions().iter().map(|&p| unit(p).as_vec3().to_array()).collect(),
+            triangles: visible.map(|(id, &t)| (t, id)).collect(),
+            extent: corners_of_all(mesh).map(|p| unit(p).length()).fold(0.0, f64::max),
+        }
+    }
+
+    /// Area (unit-sphere units) and unit normal of a triangle; `None` for a degenerate one.
+    #[must_use]
+    pub fn area_and_normal(&self, mesh: &TriMesh, triangle: TriangleId) -> Option<(f64, DVec3)> {
+        let doubled = geom::area_vector_doubled(mesh.corners(triangle).map(|p| self.to_unit(p)));
+        let area = 0.5 * doubled.length();
+        (area >= DEGENERATE_AREA).then(|| (area, doubled / (2.0 * area)))
+    }
+}
+
+fn corners_of_all(mesh: &TriMesh) -> impl Iterator<Item = DVec3> + '_ {
+    mesh.triangles().iter().flatten().map(|&v| mesh.positions()[v as usize])
+}

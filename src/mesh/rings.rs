@@ -1,0 +1,70 @@
+use crate::mesh::{TriMesh, TriangleId};
+
+/// Which triangles meet at each vertex: the way from a triangle to its neighbours.
+#[derive(Debug, Clone)]
+pub struct VertexTriangles {
+    /// Where each vertex's triangles start in `triangles`; one entry more than vertices.
+    starts: Vec<u32>,
+    triangles: Vec<u32>,
+}
+
+impl VertexTriangles {
+    /// The triangles around every vertex of `mesh`.
+    #[must_use]
+    pub fn of(mesh: &TriMesh) -> Self {
+        let mut starts = vec![0; mesh.vertex_count() + 1];
+        for &v in mesh.triangles().iter().flatten() {
+            starts[v as usize + 1] += 1;
+        }
+        for v in 1..starts.len() {
+            starts[v] += starts[v - 1];
+        }
+        let mut free = starts.clone();
+        let mut triangles = vec![0; 3 * mesh.triangle_count()];
+        for (t, corners) in (0..).zip(mesh.triangles()) {
+            for &v in corners {
+                triangles[free[v as usize] as usize] = t;
+                free[v as usize] += 1;
+            }
+        }
+        Self { starts, triangles }
+    }
+
+    /// Numbers of the triangles around a vertex, ascending.
+    #[must_use]
+    pub fn around(&self, vertex: u32) -> &[u32] {
+        let v = vertex as usize;
+        &self.triangles[self.starts[v] as usize..self.starts[v + 1] as usize]
+    }
+
+    /// The triangles that share a vertex with any of `set` and are not in it; both sorted.
+    ///
+    /// `set` must be sorted.
+    #[must_use]
+    pub fn next_ring(&self, mesh: &TriMesh, set: &[u32]) -> Vec<u32> {
+        let corners = set.iter().flat_map(|&t| mesh.triangles()[t as usize]);
+        let mut ring: Vec<u32> = corners.flat_map(|v| self.around(v)).copied().collect();
+        ring.sort_unstable();
+        ring.dedup();
+        ring.retain(|t| set.binary_search(t).is_err());
+        ring
+    }
+
+    /// Whether `condition` holds for a triangle and all triangles within `rings` rings around it.
+    #[must_use]
+    pub fn all_within(&self, mesh: &TriMesh, t: TriangleId, rings: usize, condition: impl Fn(u32) -> bool) -> bool {
+        let mut set = vec![t.0];
+        if !condition(t.0) {
+            return false;
+        }
+        for _ in 0..rings {
+            let ring = self.next_ring(mesh, &set);
+            if !ring.iter().all(|&n| condition(n)) {
+                return false;
+            }
+            set.extend(ring);
+            set.sort_unstable();
+        }
+        true
+    }
+}

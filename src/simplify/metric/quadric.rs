@@ -1,0 +1,143 @@
+//! Quadric error: Q places the new vertex, Q_v, weighted by importance, orders the collapses.
+//!
+//! Sources: Garland & Heckbert 1997 (accumulated quadrics); Zhang & Turk 2002, eqs. 5.5 to 5.10 (the two quadrics).
+
+use super::{Candidate, Metric};
+use crate::geom::area_vector_doubled;
+use crate::mesh::adjacency::Edges;
+use crate::simplify::placement::Placement;
+use crate::simplify::quadric::Quadric;
+use crate::simplify::surface::Surface;
+use crate::simplify::{Boundary, PlaneWeight, SimplifyOptions};
+
+/// Smallest area of a triangle that has a plane, in unit-sphere units squared.
+const MIN_AREA: f64 = 1e-14;
+
+/// A sum of squares below this share of the sum of its weights is rounding, and counts as 0.
+const NOISE: f64 = 1e-14;
+
+/// Quadric error metric with separate quadrics for position and cost.
+#[derive(Debug)]
+pub struct QuadricMetric {
+    placement: Placement,
+    /// Q of each vertex.
+    position_quadrics: Vec<Quadric>,
+    /// Q_v of each vertex; `None` where it equals Q.
+    cost_quadrics: Option<Vec<Quadric>>,
+}
+
+impl QuadricMetric {
+    /// The quadrics of the untouched `surface`. `importance` has one factor per triangle.
+    pub fn new(surface: &Surface, edges: &Edges, importance: Option<&[f64]>, options: &SimplifyOptions) -> Self {
+        let count = surface.positions.len();
+        let mut metric = Self {
+            placement: Placement { max_distance: options.max_placement_distance, regulariser: options.regulariser },
+            position_quadrics: vec![Quadric::default(); count],
+            cost_quadrics: importance.map(|_| vec![Quadric::default(); count]),
+        };
+        let boundary_weight = match options.boundary {
+            Boundary::Weight(weight) => weight,
+            Boundary::Locked => 0.0,
+        };
+        for t in 0..surface.triangles.len() {
+            let importance = importance.map_or(1.0, |i| i[t]);
+            metric.add_triangle(
+                surface,
+                edges,
+                t,
+                PlaneTerms { by: options.plane_weight, boundary_weight, importance },
+            );
+        }
+        metric
+    }
+
+    /// Adds the plane of a triangle, and those across its boundary edges, to its corners.
+    fn add_triangle(&mut self, surface: &Surface, edges: &Edges, t: usize, terms: PlaneTerms) {
+        let corners = surface.corners_of(t as u32);
+        let vertices = surface.triangles[t].vertices;
+        let area_vector = area_vector_doubled(corners);
+        let area = 0.5 * area_vector.length();
+        if area < MIN_AREA {
+            return;
+        }
+        let normal = area_vector / (2.0 * area);
+        let weight = match terms.by {
+            PlaneWeight::Area => area,
+            PlaneWeight::Uniform => 1.0,
+        };
+        self.add_plane(&vertices, &Quadric::of_plane(normal, -normal.dot(corners[0]), weight), terms.importance);
+        if terms.boundary_weight == 0.0 {
+            return;
+        }
+        for k in 0..3 {
+            if edges.triangle_counts[edges.of_triangle[t][k] as usize] != 1 {
+                continue;
+            }
+            let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+            if let Some(across) = (corners[b] - corners[a]).cross(normal).try_normalize() {
+                let plane = Quadric::of_plane(across, -across.dot(corners[a]), terms.boundary_weight * weight);
+                self.add_plane(&[vertices[a], vertices[b]], &plane, terms.importance);
+            }
+        }
+    }
+
+    fn add_plane(&mut self, vertices: &[u32], plane: &Quadric, importance: f64) {
+        for &v in vertices {
+            self.position_quadrics[v as usize].add(plane);
+        }
+        if let Some(cost) = &mut self.cost_quadrics {
+            let plane = plane.scaled(importance);
+            for &v in vertices {
+                cost[v as usize].add(&plane);
+            }
+        }
+    }
+}
+
+/// How the planes of a triangle count.
+#[derive(Clone, Copy)]
+struct PlaneTerms {
+    by: PlaneWeight,
+    boundary_weight: f64,
+    importance: f64,
+}
+
+impl Metric for QuadricMetric {
+    fn has_second_cost(&self) -> bool {
+        self.cost_quadrics.is_some()
+    }
+
+    fn candidate(&self, surface: &Surface, ends: [u32; 2], pinned: Option<u32>) -> Candidate {
+        let at = |v: u32| surface.positions[v as usize];
+        let [q_u, q_v] = ends.map(|v| &self.position_quadrics[v as usize]);
+        let position = match pinned {
+            Some(vertex) => at(vertex),
+            None => self.placement.place(ends.map(at), [q_u, q_v]),
+        };
+        let (second_cost, weight) = error(&q_u.plus(q_v), position);
+        let Some(quadrics) = &self.cost_quadrics else {
+            return Candidate { position, cost: second_cost, second_cost, mean_square: mean(second_cost, weight) };
+        };
+        let [q_u, q_v] = ends.map(|v| &quadrics[v as usize]);
+        let (cost, weight) = error(&q_u.plus(q_v), position);
+        Candidate { position, cost, second_cost, mean_square: mean(cost, weight) }
+    }
+
+    fn merge(&mut self, gone: u32, kept: u32) {
+        for quadrics in std::iter::once(&mut self.position_quadrics).chain(&mut self.cost_quadrics) {
+            let gone = quadrics[gone as usize];
+            quadrics[kept as usize].add(&gone);
+        }
+    }
+}
+
+/// The error of `q` at `x`, 0 where it is rounding, and the sum of its weights.
+fn error(q: &Quadric, x: glam::DVec3) -> (f64, f64) {
+    let weight = q.total_weight();
+    let value = q.value(x);
+    (if value < NOISE * weight { 0.0 } else { value.max(0.0) }, weight)
+}
+
+fn mean(sum: f64, weight: f64) -> f64 {
+    if weight > 0.0 { sum / weight } else { 0.0 }
+}

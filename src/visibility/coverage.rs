@@ -1,0 +1,118 @@
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use rayon::prelude::*;
+
+use crate::backend::{ItemBuffers, Workload, draw_all};
+use crate::camera::{CameraSphere, View, Window};
+use crate::error::Result;
+use crate::progress::Progress;
+use crate::raster::{Hit, Side};
+use crate::visibility::Shapes;
+
+/// In how many pixels each triangle was seen, over all cameras, weighted by camera.
+///
+/// Integers, so that the sums do not depend on the order of cameras and threads.
+#[derive(Debug, Clone)]
+pub struct CoverageCounts {
+    /// Two per triangle: seen from the front, seen from the back.
+    counts: Vec<u64>,
+    covered: u64,
+    window: Window,
+}
+
+impl CoverageCounts {
+    /// Draws every camera's view and counts.
+    ///
+    /// # Errors
+    /// As [`draw_all`].
+    pub fn of<B: ItemBuffers>(
+        backend: &B,
+        triangles: usize,
+        cameras: &CameraSphere,
+        window: Window,
+        memory_limit: Option<u64>,
+        progress: &dyn Progress,
+    ) -> Result<Self> {
+        let counts: Vec<AtomicU64> = (0..2 * triangles).map(|_| AtomicU64::new(0)).collect();
+        let covered = AtomicU64::new(0);
+        let views: Vec<View> = cameras.axes().iter().map(|axis| View::along(axis, window)).collect();
+        let load = Workload { window, memory_limit, phase: "visibility", progress };
+        draw_all(backend, &views, load, |axis, buffers| {
+            let weight = cameras.axes()[axis].weight;
+            count_pixels(buffers.near(), weight, &counts);
+            count_pixels(buffers.far(), weight, &counts);
+            covered.fetch_add(2 * weight * buffers.covered(), Ordering::Relaxed);
+            Ok(())
+        })?;
+        let counts = counts.into_iter().map(AtomicU64::into_inner).collect();
+        Ok(Self { counts, covered: covered.into_inner(), window })
+    }
+
+    /// Weighted pixels in which the cameras saw a side of a triangle.
+    #[must_use]
+    pub fn seen(&self, triangle: usize, side: Side) -> u64 {
+        self.counts[slot(triangle, side)]
+    }
+
+    /// The window that all cameras looked through.
+    #[must_use]
+    pub fn window(&self) -> Window {
+        self.window
+    }
+
+    /// V of the front and of the back of each triangle, as counted.
+    ///
+    /// V(t) = s² Σ_v a_v c(t,v) / (A_t Σ_v a_v (d_v·n_t)⁺): Zhang & Turk 2002, eq. (4.3) with F(t,v) replaced by the
+    /// share of the triangle's image that is seen, c(t,v) s² / (A_t d_v·n_t). A degenerate triangle gets 0.
+    pub(super) fn visibilities(&self, shapes: &Shapes, cameras: &CameraSphere) -> (Vec<f64>, Vec<f64>) {
+        let pixel_area = self.window.pixel_size() * self.window.pixel_size();
+        let sides = |t: usize| {
+            let area = shapes.areas[t];
+            let (front, back) = (self.seen(t, Side::Front), self.seen(t, Side::Back));
+            if area == 0.0 || front + back == 0 {
+                return (0.0, 0.0);
+            }
+            let unit = pixel_area / (area * cameras.cosine_sum(shapes.normal(t)));
+            (front as f64 * unit, back as f64 * unit)
+        };
+        (0..shapes.areas.len()).into_par_iter().map(sides).unzip()
+    }
+
+    /// The book-keeping identity: Σ A_t (V⁺ + V⁻) D(n_t) is the area that the cameras saw covered, to 1e-9.
+    pub(super) fn identity_holds(&self, front: &[f64], back: &[f64], shapes: &Shapes, cameras: &CameraSphere) -> bool {
+        let term = |t: usize| shapes.areas[t] * (front[t] + back[t]) * cameras.cosine_sum(shapes.normal(t));
+        let from_triangles: f64 = (0..front.len()).map(term).sum();
+        let from_pixels = self.window.pixel_size().powi(2) * self.covered as f64;
+        (from_triangles - from_pixels).abs() <= 1e-9 * from_pixels
+    }
+
+    /// The smallest area whose mean count, were it fully visible, reaches 16; smaller triangles are pooled.
+    ///
+    /// A triangle of area A seen by everyone collects about N A / (4 s²) pixels.
+    pub(super) fn smallest_area(&self, cameras: &CameraSphere) -> f64 {
+        const MIN_COUNT: f64 = 16.0;
+        4.0 * MIN_COUNT * self.window.pixel_size().powi(2) / cameras.count() as f64
+    }
+}
+
+fn slot(triangle: usize, side: Side) -> usize {
+    2 * triangle + usize::from(side == Side::Back)
+}
+
+/// Adds `weight` per pixel; neighbouring pixels of one triangle are added at once.
+fn count_pixels(pixels: impl Iterator<Item = Option<Hit>>, weight: u64, counts: &[AtomicU64]) {
+    let (mut current, mut run) = (None, 0);
+    let flush = |hit: Option<Hit>, run: u64| {
+        if let Some(hit) = hit {
+            counts[slot(hit.triangle.0 as usize, hit.side)].fetch_add(run * weight, Ordering::Relaxed);
+        }
+    };
+    for hit in pixels {
+        if hit != current {
+            flush(current, run);
+            (current, run) = (hit, 0);
+        }
+        run += 1;
+    }
+    flush(current, run);
+}
