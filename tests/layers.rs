@@ -33,13 +33,29 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("refit", LAYERS_0_5),
     ("report", LAYERS_0_5),
     ("shard", LAYERS_0_5),
-    ("pipeline", LAYERS_0_5),
+    ("pipeline", PIPELINE),
 ];
 
 const LAYER_0: &[&str] = &["error", "progress", "geom"];
 const LAYERS_0_1: &[&str] = &["error", "progress", "geom", "mesh"];
 /// Visibility and its like neither read files nor collapse edges.
 const LAYERS_0_4: &[&str] = &["error", "progress", "geom", "mesh", "camera", "raster", "backend"];
+/// The straight path is written out below its siblings: it puts what the others make into reports and pictures.
+const PIPELINE: &[&str] = &[
+    "error",
+    "progress",
+    "geom",
+    "mesh",
+    "io",
+    "camera",
+    "simplify",
+    "raster",
+    "backend",
+    "visibility",
+    "eval",
+    "silhouette",
+    "report",
+];
 const LAYERS_0_5: &[&str] = &[
     "error",
     "progress",

@@ -1,8 +1,8 @@
 //! Flags that say how edges collapse.
 
 use clap::{Args, ValueEnum};
-use outsight::pipeline::Hidden;
 use outsight::simplify::{Boundary, PlaneWeight, Topology};
+use outsight::visibility::Hidden;
 
 use super::flags::names;
 use super::values;

@@ -27,8 +27,8 @@ pub struct Flags {
     #[arg(short, long, value_name = "PNG")]
     output: Option<PathBuf>,
     /// Points on each mesh for the distances [default: 10 per triangle of REF]
-    #[arg(long, value_name = "N", value_parser = super::values::triangles)]
-    samples: Option<usize>,
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    samples: Option<u64>,
 }
 
 /// Compares, writes the contact sheet, prints.

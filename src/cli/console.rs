@@ -68,7 +68,7 @@ impl Console {
         let mut out = std::io::stdout().lock();
         match out.write_all(bytes.as_ref()).and_then(|()| out.flush()) {
             Ok(()) => Ok(()),
-            Err(e) if e.kind() == ErrorKind::BrokenPipe => Err(Failure::ClosedPipe),
+            Err(e) if e.kind() == ErrorKind::BrokenPipe => Err(Error::ClosedPipe.into()),
             Err(e) => Err(Failure::Stdout(e)),
         }
     }

@@ -25,7 +25,7 @@ pub struct Flags {
     output: PathBuf,
     /// Format of OUT, where its name does not say it
     #[arg(long, value_name = "FORMAT")]
-    to: Option<FormatName>,
+    output_format: Option<FormatName>,
 }
 
 #[derive(Debug, Serialize)]
@@ -41,7 +41,7 @@ struct Report<'a> {
 /// Reads, writes, prints.
 pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
     let (input, output) = (&flags.input.mesh, flags.output.as_path());
-    let write = WriteOptions { force: console.global.force, format: flags.to.map(Into::into) };
+    let write = WriteOptions { force: console.global.force, format: flags.output_format.map(Into::into) };
     if is_pipe(output) && console.global.json {
         let message = "standard output cannot hold both a mesh and --json; name a file".to_owned();
         return Err(Error::Option { name: "OUT", message }.into());

@@ -6,11 +6,12 @@ use clap::Args;
 use outsight::error::{Error, Result};
 use outsight::io::{self, ReadOptions};
 use outsight::pipeline::{
-    self, ColourMap, CompareReport, CompareRequest, Hidden, LevelRequest, MeasureReport, MeasureRequest, Metric,
-    RenderRequest, SimplifyReport, SimplifyRequest, Style, TestReport,
+    self, CompareReport, CompareRequest, LevelRequest, MeasureReport, MeasureRequest, Metric, RenderRequest,
+    SimplifyReport, SimplifyRequest, Style, TestReport,
 };
+use outsight::report::colour::ColourMap;
 use outsight::simplify::{SimplifyOptions, Target};
-use outsight::visibility::MeasureOptions;
+use outsight::visibility::{Hidden, MeasureOptions};
 use serde::Serialize;
 
 use super::bundled;
@@ -91,7 +92,7 @@ impl Files {
 /// Measures, simplifies twice, compares, draws, explains.
 pub fn run(_flags: &Flags, console: &Console) -> std::result::Result<(), Failure> {
     let files = prepare(Path::new(DIRECTORY))?;
-    let looking = presets::measure_options(&LookingFlags::default())?;
+    let looking = presets::measure_options(&LookingFlags::default(), &console.global)?;
     let watch = Watch::new(console, Task::Simplify { resolution: 0 }).deleting_knowingly(true);
 
     console.note("measuring: which triangles of the gearbox can be seen from outside?");

@@ -78,7 +78,7 @@ fn backends() -> Vec<BackendState> {
 /// Measures a cube: nothing hides any of it, so that every visibility must be 1.
 fn self_check(console: &Console) -> SelfCheck {
     let what = "visibility of a cube, which must be 1";
-    let measured = presets::measure_options(&LookingFlags::default())
+    let measured = presets::measure_options(&LookingFlags::default(), &console.global)
         .and_then(|options: MeasureOptions| visibility::measure(&cube(), &options, console));
     match measured {
         Ok(seen) => {

@@ -24,8 +24,6 @@ const REPORT_TO: &str = "please report it with the command you ran and the outpu
 pub enum Failure {
     /// The library said so.
     Error(Error),
-    /// Whoever read our standard output has gone; there is nobody left to tell.
-    ClosedPipe,
     /// Standard output could not be written for another reason.
     Stdout(std::io::Error),
     /// The answer is no, and it was already printed.
@@ -43,13 +41,13 @@ impl From<Error> for Failure {
 /// Prints the message of a failure and returns the exit code of the process.
 pub fn conclude(failure: &Failure, console: &Console) -> u8 {
     match failure {
-        Failure::ClosedPipe => 0,
         Failure::ConditionFalse => CONDITION_FALSE,
         Failure::Bug => BUG,
         Failure::Stdout(error) => {
             to_stderr(&format!("error: standard output: {error}"));
             OUTPUT
         }
+        Failure::Error(Error::ClosedPipe) => 0,
         Failure::Error(Error::Cancelled) => conclude_cancelled(console),
         Failure::Error(error) => {
             to_stderr(&format!("error: {error}"));
@@ -117,6 +115,6 @@ mod tests {
 
     #[test]
     fn closed_pipe_is_a_quiet_success() {
-        assert_eq!(conclude(&Failure::ClosedPipe, &Console::silent()), 0);
+        assert_eq!(conclude(&Failure::Error(Error::ClosedPipe), &Console::silent()), 0);
     }
 }

@@ -10,7 +10,7 @@ use outsight::backend::BackendKind;
 use outsight::camera::CameraWeights;
 use outsight::error::{Error, Result};
 use outsight::io::{Format, ReadOptions};
-use outsight::pipeline::ColourMap;
+use outsight::report::colour::ColourMap;
 use outsight::visibility::{Estimator, Sides};
 
 use super::progress::Show;
@@ -80,7 +80,7 @@ pub struct InputFlags {
 pub struct ReadingFlags {
     /// Format of the input, where its name does not say it
     #[arg(long, value_name = "FORMAT")]
-    from: Option<FormatName>,
+    input_format: Option<FormatName>,
     /// Merge vertices at exactly equal positions
     #[arg(long)]
     weld: bool,
@@ -89,12 +89,7 @@ pub struct ReadingFlags {
 impl ReadingFlags {
     /// The library's options for these flags.
     pub fn options(&self, global: &GlobalFlags) -> ReadOptions {
-        ReadOptions {
-            format: self.from.map(Format::from),
-            weld: self.weld,
-            memory_limit: global.memory_limit,
-            ..ReadOptions::default()
-        }
+        ReadOptions { format: self.input_format.map(Format::from), weld: self.weld, memory_limit: global.memory_limit }
     }
 }
 

@@ -23,7 +23,7 @@ pub const INFO: &str = "\
 Examples:
   outsight info bunny.ply
   outsight info --json scan.stl.gz | jq .topology.closed
-  curl -s https://example.org/part.obj | outsight info - --from obj";
+  curl -s https://example.org/part.obj | outsight info -";
 
 /// Behind `outsight measure --help`.
 pub const MEASURE: &str = "\
@@ -48,7 +48,7 @@ Examples:
   outsight simplify part.obj -o small.stl -t 20000 -e 0.1    20,000 triangles, or error 0.1
   outsight simplify part.ply -o lod/{}.ply --lods 0.5,0.25,0.1
   outsight simplify part.ply -o qb.ply -r 0.05 --metric quadric
-  outsight simplify - -o - --from stl --to ply -r 0.1 < in.stl > out.ply";
+  outsight simplify - -o - --output-format ply -r 0.1 < in.stl > out.ply";
 
 /// Behind `outsight compare --help`.
 pub const COMPARE: &str = "\
@@ -68,7 +68,7 @@ pub const CONVERT: &str = "\
 Examples:
   outsight convert scan.stl scan.ply.zst
   outsight convert part.obj part.off --weld
-  outsight convert - out.ply --from stl < in.stl";
+  outsight convert - out.ply --input-format stl < in.stl";
 
 /// Behind `outsight doctor --help`.
 pub const DOCTOR: &str = "\

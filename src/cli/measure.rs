@@ -57,7 +57,7 @@ fn request(flags: &Flags, console: &Console) -> outsight::Result<MeasureRequest>
     Ok(MeasureRequest {
         input: flags.input.mesh.clone(),
         read: flags.input.reading.options(&console.global),
-        measure: presets::measure_options(&flags.looking)?,
+        measure: presets::measure_options(&flags.looking, &console.global)?,
         output: flags.output.clone(),
         colour_map: flags.colour_map.into(),
         force: console.global.force,

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use outsight::error::{Error, Result};
-use outsight::io::Format;
+use outsight::io::{self, Format};
 
 /// Endings that stand behind another: the file is compressed.
 const COMPRESSED: [&str; 2] = ["zst", "gz"];
@@ -26,10 +26,6 @@ impl Kind {
             Self::Visibility => &["ply", "npy", "csv"],
             Self::Picture => &["png"],
         }
-    }
-
-    fn may_be_compressed(self, ending: &str) -> bool {
-        self == Self::Mesh || ending == "ply"
     }
 }
 
@@ -56,7 +52,14 @@ pub fn is_pipe(path: &Path) -> bool {
 /// [`Error::Option`] for a wrong name, [`Error::Write`] for what is in the way.
 pub fn check(output: Planned<'_>, inputs: &[&Path], force: bool) -> Result<()> {
     if is_pipe(output.path) {
-        return if output.kind == Kind::Mesh { Ok(()) } else { Err(needs_name(output.kind)) };
+        return match (output.kind, output.format) {
+            (Kind::Mesh, Some(_)) => Ok(()),
+            (Kind::Mesh, None) => Err(Error::Option {
+                name: "--output-format",
+                message: "standard output has no name that says the format; give ply, obj, stl or off".to_owned(),
+            }),
+            _ => Err(needs_name(output.kind)),
+        };
     }
     check_ending(output)?;
     if let Some(input) = inputs.iter().find(|input| same_file(input, output.path)) {
@@ -71,45 +74,31 @@ pub fn check(output: Planned<'_>, inputs: &[&Path], force: bool) -> Result<()> {
 /// # Errors
 /// [`Error::Write`].
 pub fn check_place(path: &Path, force: bool) -> Result<()> {
-    let fail = |message: String| Err(Error::Write { path: path.to_owned(), message });
-    if path.is_dir() {
-        return fail("is a directory; name a file in it".to_owned());
-    }
-    if path.exists() && !force {
-        return fail("is there already; use --force to replace it".to_owned());
-    }
-    let directory = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
-    if !directory.is_dir() {
-        return fail(format!("the directory {} does not exist; make it first", directory.display()));
+    io::check_target(path, force)?;
+    let directory = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if path.exists() && !path.is_file() {
+        // A device or a named pipe is written to directly.
+        return Ok(());
     }
     // Only trying tells: permissions, read-only file systems and full quotas look different everywhere.
-    match tempfile::tempfile_in(directory) {
-        Ok(_) => Ok(()),
-        Err(e) => fail(format!("the directory {} cannot be written to: {e}", directory.display())),
-    }
+    tempfile::tempfile_in(directory).map(drop).map_err(|e| Error::Write {
+        path: path.to_owned(),
+        message: format!("the directory {} cannot be written to: {e}", directory.display()),
+    })
 }
 
 fn check_ending(output: Planned<'_>) -> Result<()> {
-    if output.format.is_some() {
-        return Ok(());
-    }
     let (base, compressed) = without_compression(output.path);
-    let ending = ending_of(&base);
-    let known = output.kind.endings().contains(&ending.as_str());
-    if known && (!compressed || output.kind.may_be_compressed(&ending)) { Ok(()) } else { Err(needs_name(output.kind)) }
+    // A hidden file such as `.ply` has a name and no ending.
+    let ending = if output.format.is_some() { String::new() } else { ending_of(&base) };
+    let known = output.format.is_some() || output.kind.endings().contains(&ending.as_str());
+    if known && !(compressed && output.kind == Kind::Picture) { Ok(()) } else { Err(needs_name(output.kind)) }
 }
 
 fn needs_name(kind: Kind) -> Error {
     let endings: Vec<String> = kind.endings().iter().map(|e| format!(".{e}")).collect();
     let message = format!("name a file that ends in {}", endings.join(", "));
-    let more = match kind {
-        Kind::Mesh => "; .zst or .gz behind it compresses",
-        Kind::Visibility => "; .ply may have .zst or .gz behind it",
-        Kind::Picture => "",
-    };
+    let more = if kind == Kind::Picture { "" } else { "; .zst or .gz behind it compresses" };
     Error::Option { name: "--output", message: message + more }
 }
 
@@ -168,8 +157,8 @@ mod tests {
             let error = check(mesh(Path::new(name)), &[], false).unwrap_err();
             assert_eq!(error.exit_code(), 2, "{name}");
         }
-        let npy = Planned { path: Path::new("x.npy.gz"), kind: Kind::Visibility, format: None };
-        assert_eq!(check(npy, &[], false).unwrap_err().exit_code(), 2);
+        let png = Planned { path: Path::new("x.png.gz"), kind: Kind::Picture, format: None };
+        assert_eq!(check(png, &[], false).unwrap_err().exit_code(), 2);
     }
 
     #[test]

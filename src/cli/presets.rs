@@ -1,20 +1,14 @@
 //! Turns flags into the library's options: the preset gives the defaults, an explicit flag overrides it.
 
-use outsight::backend::BackendKind;
-use outsight::camera::CameraWeights;
 use outsight::error::{Error, Result};
-use outsight::pipeline::{Hidden, Metric};
-use outsight::simplify::{Boundary, PlaneWeight, SimplifyOptions, Topology};
-use outsight::visibility::{Estimator, MeasureOptions, Sides};
+use outsight::pipeline::Metric;
+use outsight::simplify::{PlaneWeight, SimplifyOptions, Topology};
+use outsight::visibility::{Hidden, MeasureOptions};
 
 use super::collapsing::{CollapseFlags, MetricName, RefitName};
 use super::console::Console;
-use super::flags::{LookingFlags, Preset};
+use super::flags::{GlobalFlags, LookingFlags, Preset};
 
-/// Cameras of both presets.
-const CAMERAS: usize = 258;
-/// Pixels along an image's side in the paper.
-const PAPER_RESOLUTION: u32 = 480;
 /// p in V^p: both presets square, as the paper does.
 pub const VISIBILITY_POWER: f64 = 2.0;
 
@@ -22,19 +16,21 @@ pub const VISIBILITY_POWER: f64 = 2.0;
 ///
 /// # Errors
 /// [`Error::Unavailable`] for a backend or an estimator that this version does not have.
-pub fn measure_options(flags: &LookingFlags) -> Result<MeasureOptions> {
-    let paper = flags.preset == Preset::Paper;
-    let options = MeasureOptions {
-        cameras: flags.cameras.unwrap_or(CAMERAS),
-        camera_weights: flags
-            .camera_weights
-            .map_or(if paper { CameraWeights::Equal } else { CameraWeights::Area }, CameraWeights::from),
-        resolution: flags.resolution.or(paper.then_some(PAPER_RESOLUTION)),
-        backend: flags.backend.map_or(BackendKind::Raster, BackendKind::from),
-        estimator: flags.estimator.map_or(Estimator::Coverage, Estimator::from),
-        sides: flags.sides.map_or(if paper { Sides::One } else { Sides::Better }, Sides::from),
+pub fn measure_options(flags: &LookingFlags, global: &GlobalFlags) -> Result<MeasureOptions> {
+    let preset = match flags.preset {
+        Preset::Best => MeasureOptions::default(),
+        Preset::Paper => MeasureOptions::paper(),
     };
-    check_available(&options)?;
+    let options = MeasureOptions {
+        cameras: flags.cameras.unwrap_or(preset.cameras),
+        camera_weights: flags.camera_weights.map_or(preset.camera_weights, Into::into),
+        resolution: flags.resolution.or(preset.resolution),
+        backend: flags.backend.map_or(preset.backend, Into::into),
+        estimator: flags.estimator.map_or(preset.estimator, Into::into),
+        sides: flags.sides.map_or(preset.sides, Into::into),
+        memory_limit: global.memory_limit,
+    };
+    options.check()?;
     Ok(options)
 }
 
@@ -46,24 +42,6 @@ pub fn announce_stand_ins(flags: &LookingFlags, console: &Console) {
              silences this",
         );
     }
-}
-
-fn check_available(options: &MeasureOptions) -> Result<()> {
-    let unavailable = |message: String| Err(Error::Unavailable { message });
-    match options.backend {
-        BackendKind::Raster => {}
-        other => {
-            let name = other.name();
-            return unavailable(format!("backend {name} is not in this version of Outsight; use --backend raster"));
-        }
-    }
-    let name = match options.estimator {
-        Estimator::Coverage => return Ok(()),
-        Estimator::ItemBuffer => "item-buffer",
-        Estimator::Surface => "surface",
-        Estimator::Hemisphere => "hemisphere",
-    };
-    unavailable(format!("estimator {name} is not in this version of Outsight; use --estimator coverage"))
 }
 
 /// What orders the collapses under these flags.
@@ -107,7 +85,7 @@ pub fn simplify_options(flags: &CollapseFlags, preset: Preset) -> Result<Simplif
     }
     let base = match preset {
         Preset::Best => SimplifyOptions::default(),
-        Preset::Paper => paper_simplify_options(),
+        Preset::Paper => SimplifyOptions::paper(),
     };
     Ok(SimplifyOptions {
         plane_weight: flags.weights_by.map_or(base.plane_weight, PlaneWeight::from),
@@ -115,14 +93,4 @@ pub fn simplify_options(flags: &CollapseFlags, preset: Preset) -> Result<Simplif
         boundary: flags.boundary.unwrap_or(base.boundary),
         ..base
     })
-}
-
-/// Quadrics as Zhang & Turk print them: every plane alike, nothing for borders, nothing added.
-fn paper_simplify_options() -> SimplifyOptions {
-    SimplifyOptions {
-        plane_weight: PlaneWeight::Uniform,
-        boundary: Boundary::Weight(0.0),
-        regulariser: 0.0,
-        ..SimplifyOptions::default()
-    }
 }

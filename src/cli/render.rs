@@ -91,7 +91,7 @@ fn request(flags: &Flags, console: &Console) -> outsight::Result<RenderRequest> 
         size: flags.size,
         colour_map: flags.colour_map.into(),
         legend: flags.legend || (style == Style::Heat && !flags.no_legend),
-        measure: presets::measure_options(&flags.looking)?,
+        measure: presets::measure_options(&flags.looking, &console.global)?,
         force: console.global.force,
     })
 }

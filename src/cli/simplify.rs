@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args};
 use outsight::Error;
-use outsight::pipeline::{Hidden, LevelRequest, Metric, SimplifyReport, SimplifyRequest, run_simplify};
+use outsight::pipeline::{LevelRequest, Metric, SimplifyReport, SimplifyRequest, run_simplify};
 use outsight::simplify::{SimplifyOptions, Target};
+use outsight::visibility::Hidden;
 use serde::Serialize;
 
 use super::collapsing::CollapseFlags;
@@ -30,7 +31,7 @@ pub struct Flags {
     output: PathBuf,
     /// Format of the output, where its name does not say it
     #[arg(long, value_name = "FORMAT")]
-    to: Option<FormatName>,
+    output_format: Option<FormatName>,
     /// Stop at this many triangles
     #[arg(short, long, value_name = "N", value_parser = values::triangles, group = "size")]
     triangles: Option<usize>,
@@ -81,12 +82,12 @@ fn request(flags: &Flags, console: &Console) -> outsight::Result<SimplifyRequest
         input: flags.input.mesh.clone(),
         read: flags.input.reading.options(&console.global),
         metric,
-        measure: presets::measure_options(&flags.looking)?,
+        measure: presets::measure_options(&flags.looking, &console.global)?,
         hidden: presets::hidden(&flags.collapse, preset, metric),
         visibility_power: presets::visibility_power(&flags.collapse),
         simplify: SimplifyOptions { max_error: flags.max_error, ..presets::simplify_options(&flags.collapse, preset)? },
         levels: levels(flags),
-        format: flags.to.map(Into::into),
+        format: flags.output_format.map(Into::into),
         force: console.global.force,
     })
 }

@@ -55,7 +55,7 @@ impl Observer for Watch<'_> {
         let triangles = loaded.mesh.triangle_count();
         self.console.detail(&format!("{}: {} triangles", path.display(), count(triangles)));
         if self.writes_mesh && !loaded.dropped.is_empty() {
-            self.console.warn(path, &format!("not carried over: {}", list(&loaded.dropped)))?;
+            self.console.warn(path, &format!("not carried over: {}", dropped_names(&loaded.dropped).join(", ")))?;
         }
         if let Some(message) = set_aside_message(loaded) {
             self.console.warn(path, &message)?;
@@ -106,21 +106,5 @@ fn check_memory(limit: Option<u64>, task: Task, triangles: usize) -> Result<()> 
 
 /// The names of what was dropped, as messages and JSON spell them.
 pub fn dropped_names(dropped: &[Dropped]) -> Vec<&'static str> {
-    dropped.iter().map(|d| dropped_name(*d)).collect()
-}
-
-fn list(dropped: &[Dropped]) -> String {
-    dropped_names(dropped).join(", ")
-}
-
-fn dropped_name(dropped: Dropped) -> &'static str {
-    match dropped {
-        Dropped::Normals => "normals",
-        Dropped::TextureCoordinates => "texture coordinates",
-        Dropped::Colours => "colours",
-        Dropped::Materials => "materials",
-        Dropped::Parts => "parts",
-        Dropped::PointsAndLines => "points and lines",
-        Dropped::OtherProperties => "other properties",
-    }
+    dropped.iter().map(|d| d.name()).collect()
 }

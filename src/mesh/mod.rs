@@ -4,14 +4,15 @@
 //! checking: every index is in range, no triangle repeats a vertex, every coordinate is finite, and there is at least
 //! one triangle. What a file holds beyond that is set aside, and counted, by [`TriMesh::from_triangles`].
 
+pub mod adjacency;
 mod rings;
-
-pub use rings::VertexTriangles;
+pub mod shapes;
+mod subset;
 mod weld;
 
+pub use rings::VertexTriangles;
+pub use subset::Subset;
 pub use weld::{Welder, weld};
-pub mod adjacency;
-pub mod shapes;
 
 use glam::DVec3;
 

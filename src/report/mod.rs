@@ -1,1 +1,11 @@
-//! (to come)
+//! What people look at: colour maps, pictures with text, contact sheets and plain tables.
+//!
+//! Pictures are made from plain arrays of grey levels or colours; nothing here knows where they came from.
+
+mod font;
+
+pub mod colour;
+pub mod contact_sheet;
+pub mod legend;
+pub mod picture;
+pub mod table;
