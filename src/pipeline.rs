@@ -1,26 +1,65 @@
-//! The straight path, from mesh file to result: read, look, weigh, simplify, write; then compare.
+//! The straight path, from mesh file to result.
 //!
-//! Each run takes a request, a plain struct that says all there is to decide, and gives a report: what was reached, why
-//! it stopped, and where the time went. [`run_simplify`] is the path itself; the others are its parts.
+//! [`run_simplify`] is the whole of it:
+//!
+//! ```text
+//! mesh file → io → mesh → camera → backend → visibility → weights → simplify → io → mesh file
+//! ```
+//!
+//! [`measure_file`], [`compare_files`] and [`render_file`] leave it early or look at its two ends.
 
 mod compare;
 mod measure;
 mod render;
 mod simplify;
 
-pub use compare::{CompareReport, CompareRequest, TestReport, compare_files};
+pub use compare::{CompareReport, CompareRequest, GeometricReport, TestReport, compare_files};
 pub use measure::{MeasureReport, MeasureRequest, MeasureSeconds, VisibilitySummary, measure_file};
 pub use render::{RenderRequest, Style, render_file};
-pub use simplify::{LevelReport, LevelRequest, Metric, SimplifyReport, SimplifyRequest, SimplifySeconds, run_simplify};
+pub use simplify::{
+    LevelReport, LevelRequest, Metric, Simplified, SimplifyReport, SimplifyRequest, SimplifySeconds, simplify_seen,
+};
 
 use std::path::Path;
 use std::time::Instant;
 
 use crate::error::Result;
-use crate::io::{self, Loaded, ReadOptions};
+use crate::io::{self, Loaded, TriangleAttributes, WriteOptions};
 use crate::progress::{CancelFlag, Progress, Silent};
+use crate::visibility;
 
-/// Follows a run: its progress, and what its user should know before the long work goes on.
+/// Reads a mesh, looks at it, simplifies it where nobody looks, writes every level.
+///
+/// # Errors
+/// As its steps. What was written before an error stays; each file is whole or not there.
+pub fn run_simplify(request: &SimplifyRequest, observer: &dyn Observer) -> Result<SimplifyReport> {
+    let mut clock = Clock::start();
+    request.check()?;
+    let mesh = {
+        let loaded = io::read(&request.input, &request.read)?;
+        observer.mesh_read(&request.input, &loaded)?;
+        loaded.mesh
+    };
+    let read = clock.lap();
+    let view = match request.metric {
+        Metric::Visibility => Some(visibility::look(&mesh, &request.measure, request.hidden, observer)?),
+        Metric::Quadric => None,
+    };
+    let looked = clock.lap();
+    let triangles = mesh.triangle_count();
+    let simplified = simplify_seen(mesh, view, request, observer)?;
+    let collapsed = clock.lap();
+    for (level, wanted) in simplified.levels.iter().zip(&request.levels) {
+        observer.check()?;
+        let options = WriteOptions { force: request.force, format: request.format };
+        io::write(&wanted.output, &level.mesh, &TriangleAttributes::default(), &options)?;
+    }
+    let seconds =
+        SimplifySeconds { read, visibility: looked, simplify: collapsed, write: clock.lap(), total: clock.total() };
+    Ok(SimplifyReport::new(request, triangles, &simplified, seconds))
+}
+
+/// Follows a run: its progress, and what its user should know before the long work starts.
 pub trait Observer: Progress {
     /// A mesh was read; an error ends the run.
     ///
@@ -30,7 +69,7 @@ pub trait Observer: Progress {
         Ok(())
     }
 
-    /// `deleted` of `given` triangles are hidden and leave the mesh before it is simplified; an error ends the run.
+    /// `deleted` of `given` triangles are hidden and leave the mesh before it is simplified.
     ///
     /// # Errors
     /// Whatever the observer decides.
@@ -42,43 +81,27 @@ pub trait Observer: Progress {
 impl Observer for Silent {}
 impl Observer for CancelFlag {}
 
-/// Lets an observer be handed on where only its progress counts.
-fn as_progress<'a>(observer: &'a dyn Observer) -> &'a (dyn Progress + 'a) {
-    observer
-}
-
-fn read(path: &Path, options: &ReadOptions, observer: &dyn Observer) -> Result<Loaded> {
-    let loaded = io::read(path, options)?;
-    observer.mesh_read(path, &loaded)?;
-    observer.check()?;
-    Ok(loaded)
-}
-
-/// What was dropped, as JSON spells it.
-fn dropped_names(loaded: &Loaded) -> Vec<&'static str> {
-    loaded.dropped.iter().map(|d| d.name()).collect()
-}
-
-/// Measures the steps of a run, one after the other.
-struct Stopwatch {
+/// Wall time, lap by lap.
+struct Clock {
     start: Instant,
     lap: Instant,
 }
 
-impl Stopwatch {
+impl Clock {
     fn start() -> Self {
         let now = Instant::now();
         Self { start: now, lap: now }
     }
 
-    /// Seconds since the last call, or since the start.
-    fn lap_s(&mut self) -> f64 {
-        let before = std::mem::replace(&mut self.lap, Instant::now());
-        (self.lap - before).as_secs_f64()
+    /// Seconds since the last lap.
+    fn lap(&mut self) -> f64 {
+        let now = Instant::now();
+        let seconds = now.duration_since(self.lap).as_secs_f64();
+        self.lap = now;
+        seconds
     }
 
-    /// Seconds since the start.
-    fn total_s(&self) -> f64 {
+    fn total(&self) -> f64 {
         self.start.elapsed().as_secs_f64()
     }
 }

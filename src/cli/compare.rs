@@ -4,12 +4,14 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use outsight::pipeline::{CompareReport, CompareRequest, TestReport, compare_files};
+use serde::Serialize;
 
 use super::console::Console;
 use super::estimate::Task;
 use super::failure::Failure;
-use super::flags::ReadingFlags;
+use super::flags::{ReadingFlags, UpFlags};
 use super::outputs::{self, Kind, Planned};
+use super::system::peak_mib;
 use super::text::{count, table};
 use super::watch::Watch;
 
@@ -29,6 +31,17 @@ pub struct Flags {
     /// Points on each mesh for the distances [default: 10 per triangle of REF]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     samples: Option<u64>,
+    #[command(flatten)]
+    up: UpFlags,
+}
+
+/// The library's report with what only the program knows.
+#[derive(Debug, Serialize)]
+struct Object<'a> {
+    #[serde(flatten)]
+    report: &'a CompareReport,
+    reference: &'a Path,
+    peak_mb: Option<f64>,
 }
 
 /// Compares, writes the contact sheet, prints.
@@ -40,6 +53,7 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
         samples: flags.samples,
         seed: console.global.seed,
         sheet: flags.output.clone(),
+        up: flags.up.up,
         force: console.global.force,
     };
     if let Some(path) = &request.sheet {
@@ -47,7 +61,8 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
         outputs::check(Planned { path, kind: Kind::Picture, format: None }, &inputs, request.force)?;
     }
     let report = compare_files(&request, &Watch::new(console, Task::Compare))?;
-    console.result(&report, &text(&report, &request), true)
+    let object = Object { report: &report, reference: &request.reference, peak_mb: peak_mib() };
+    console.result(&object, &text(&report, &request), true)
 }
 
 fn text(report: &CompareReport, request: &CompareRequest) -> String {

@@ -14,7 +14,7 @@ use super::failure::Failure;
 use super::flags::{FormatName, InputFlags};
 use super::outputs::{self, Kind, Planned, is_pipe};
 use super::text::count;
-use super::watch::{Watch, dropped_names};
+use super::watch::{Found, Watch};
 
 #[derive(Debug, Args)]
 pub struct Flags {
@@ -30,12 +30,12 @@ pub struct Flags {
 
 #[derive(Debug, Serialize)]
 struct Report<'a> {
-    file: &'a Path,
+    output: &'a Path,
     triangles: usize,
     vertices: usize,
     welded: Option<usize>,
-    set_aside: usize,
-    dropped: Vec<&'static str>,
+    #[serde(flatten)]
+    found: Found,
 }
 
 /// Reads, writes, prints.
@@ -51,12 +51,11 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
     Watch::new(console, Task::Read).writing_mesh(true).mesh_read(input, &loaded)?;
     io::write(output, &loaded.mesh, &TriangleAttributes::default(), &write)?;
     let report = Report {
-        file: output,
+        output,
         triangles: loaded.mesh.triangle_count(),
         vertices: loaded.mesh.vertex_count(),
         welded: loaded.welded,
-        set_aside: loaded.set_aside.count(),
-        dropped: dropped_names(&loaded.dropped),
+        found: Found::new(input, &loaded),
     };
     console.result(&report, &text(&report), !is_pipe(output))
 }
@@ -65,7 +64,7 @@ fn text(report: &Report<'_>) -> String {
     let welded = report.welded.map(|n| format!(", {} vertices welded", count(n))).unwrap_or_default();
     format!(
         "{}  {} triangles, {} vertices{welded}\n",
-        report.file.display(),
+        report.output.display(),
         count(report.triangles),
         count(report.vertices)
     )

@@ -30,6 +30,8 @@ const DIRECTORY: &str = "outsight-demo";
 const RATIO: f64 = 0.05;
 /// From the gearbox toward the camera of the heat map: above, in front, to the right.
 const CAMERA: [f64; 3] = [1.0, -2.0, 1.2];
+/// The gearbox stands on its feet along z.
+const UP: [f64; 3] = [0.0, 0.0, 1.0];
 /// Pixels along the side of the heat map.
 const PICTURE_SIZE: u32 = 900;
 
@@ -147,6 +149,7 @@ fn heat_request(files: &Files, looking: &MeasureOptions) -> RenderRequest {
         output: files.heat_picture.clone(),
         style: Style::Heat,
         camera: CAMERA,
+        up: UP,
         size: PICTURE_SIZE,
         colour_map: ColourMap::Paper,
         legend: true,
@@ -178,6 +181,7 @@ fn compare_request(files: &Files, seed: u64) -> CompareRequest {
         samples: None,
         seed,
         sheet: Some(files.differences.clone()),
+        up: UP,
         force: true,
     }
 }

@@ -93,6 +93,15 @@ impl ReadingFlags {
     }
 }
 
+/// What is up in pictures.
+#[derive(Debug, Clone, Args)]
+pub struct UpFlags {
+    /// Direction that points up in pictures
+    #[arg(long, value_name = "X,Y,Z", default_value = "0,0,1", allow_hyphen_values = true)]
+    #[arg(value_parser = values::direction)]
+    pub up: [f64; 3],
+}
+
 /// How visibility is measured.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Looking")]

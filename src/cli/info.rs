@@ -1,5 +1,7 @@
 //! `outsight info`: what a mesh file holds.
 
+use std::path::Path;
+
 use clap::Args;
 use outsight::geom;
 use outsight::io::{self, Loaded};
@@ -13,7 +15,7 @@ use super::estimate::{self, Task};
 use super::failure::Failure;
 use super::flags::InputFlags;
 use super::text::{count, duration, megabytes, pairs};
-use super::watch::{Watch, dropped_names};
+use super::watch::{Found, Watch};
 
 /// Cameras that the estimate of time is for, the default of `measure`.
 const ESTIMATED_CAMERAS: usize = 258;
@@ -26,16 +28,15 @@ pub struct Flags {
 
 #[derive(Debug, Serialize)]
 struct Report {
-    file: String,
+    #[serde(flatten)]
+    found: Found,
     format: &'static str,
     vertices: usize,
     triangles: usize,
     topology: Topology,
     size: Size,
     estimate: Estimate,
-    set_aside: usize,
     welded: Option<usize>,
-    dropped: Vec<&'static str>,
 }
 
 #[derive(Debug, Serialize)]
@@ -69,15 +70,15 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
     let path = &flags.input.mesh;
     let loaded = io::read(path, &flags.input.reading.options(&console.global))?;
     Watch::new(console, Task::Read).mesh_read(path, &loaded)?;
-    let report = report(path.display().to_string(), &loaded);
-    console.result(&report, &text(&report), true)
+    let report = report(path, &loaded);
+    console.result(&report, &text(path, &report), true)
 }
 
-fn report(file: String, loaded: &Loaded) -> Report {
+fn report(path: &Path, loaded: &Loaded) -> Report {
     let triangles = loaded.mesh.triangle_count();
     let peak = estimate::memory_bytes(Task::Simplify { resolution: 0 }, triangles);
     Report {
-        file,
+        found: Found::new(path, loaded),
         format: loaded.format.extension(),
         vertices: loaded.mesh.vertex_count(),
         triangles,
@@ -88,9 +89,7 @@ fn report(file: String, loaded: &Loaded) -> Report {
             simplify_seconds: estimate::simplify_seconds(triangles),
             peak_mb: peak as f64 / f64::from(1 << 20),
         },
-        set_aside: loaded.set_aside.count(),
         welded: loaded.welded,
-        dropped: dropped_names(&loaded.dropped),
     }
 }
 
@@ -119,12 +118,12 @@ fn size(mesh: &TriMesh) -> Size {
     }
 }
 
-fn text(report: &Report) -> String {
+fn text(path: &Path, report: &Report) -> String {
     let (topology, size, estimate) = (&report.topology, &report.size, &report.estimate);
     let point = |p: [f64; 3]| format!("{:.6} {:.6} {:.6}", p[0], p[1], p[2]);
     let closed = if topology.closed { "yes, every edge joins two triangles" } else { "no" };
     let mut rows = vec![
-        ("file", format!("{} ({})", report.file, report.format)),
+        ("file", format!("{} ({})", path.display(), report.format)),
         ("triangles", count(report.triangles)),
         ("vertices", format!("{} ({} unused)", count(report.vertices), count(topology.unused_vertices))),
         ("components", count(topology.components)),
@@ -142,8 +141,8 @@ fn text(report: &Report) -> String {
     if let Some(welded) = report.welded {
         rows.push(("vertices welded", count(welded)));
     }
-    if !report.dropped.is_empty() {
-        rows.push(("not carried over", report.dropped.join(", ")));
+    if let Some(list) = report.found.dropped_list() {
+        rows.push(("not carried over", list));
     }
     pairs(&rows)
 }

@@ -5,16 +5,18 @@ use std::path::PathBuf;
 use clap::Args;
 use outsight::pipeline::{MeasureReport, MeasureRequest, measure_file};
 use serde::Serialize;
+use serde_json::Value;
 
 use super::console::Console;
 use super::estimate::Task;
 use super::failure::Failure;
 use super::flags::{ColourMapName, InputFlags, LookingFlags};
+use super::in_force;
 use super::outputs::{self, Kind, Planned, ending_of};
 use super::presets;
 use super::system::peak_mib;
 use super::text::{count, duration, pairs};
-use super::watch::Watch;
+use super::watch::{Found, Watch};
 
 #[derive(Debug, Args)]
 pub struct Flags {
@@ -36,6 +38,10 @@ struct Object<'a> {
     #[serde(flatten)]
     report: &'a MeasureReport,
     peak_mb: Option<f64>,
+    #[serde(flatten)]
+    found: Found,
+    output: &'a Option<PathBuf>,
+    options: Value,
 }
 
 /// Measures, writes, prints.
@@ -48,8 +54,15 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
     presets::announce_stand_ins(&flags.looking, console);
     let task = Task::Measure { resolution: request.measure.resolution.unwrap_or(0) };
     let writes_mesh = request.output.as_deref().is_some_and(|p| !["npy", "csv"].contains(&ending_of(p).as_str()));
-    let report = measure_file(&request, &Watch::new(console, task).writing_mesh(writes_mesh))?;
-    let object = Object { report: &report, peak_mb: peak_mib() };
+    let watch = Watch::new(console, task).writing_mesh(writes_mesh);
+    let report = measure_file(&request, &watch)?;
+    let object = Object {
+        report: &report,
+        peak_mb: peak_mib(),
+        found: watch.found(),
+        output: &request.output,
+        options: in_force::measure(&request.measure),
+    };
     console.result(&object, &text(&report, &request), true)
 }
 

@@ -15,6 +15,7 @@ mod estimate;
 mod failure;
 mod flags;
 mod help;
+mod in_force;
 mod info;
 mod man;
 mod measure;

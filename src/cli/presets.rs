@@ -59,13 +59,23 @@ pub fn metric(flags: &CollapseFlags) -> Result<Metric> {
     Err(Error::Unavailable { message })
 }
 
-/// What happens to hidden triangles; without visibility nothing is known to be hidden, so the default keeps them.
-pub fn hidden(flags: &CollapseFlags, preset: Preset, metric: Metric) -> Hidden {
-    match (flags.hidden, metric, preset) {
-        (Some(explicit), ..) => explicit.into(),
-        (None, Metric::Quadric, _) => Hidden::Keep,
-        (None, Metric::Visibility, Preset::Best) => Hidden::Delete,
-        (None, Metric::Visibility, Preset::Paper) => Hidden::Collapse,
+/// What happens to hidden triangles.
+///
+/// # Errors
+/// [`Error::Option`] for anything but `keep` under a metric that does not look: nothing would be known to be hidden.
+pub fn hidden(flags: &CollapseFlags, preset: Preset, metric: Metric) -> Result<Hidden> {
+    let asked = flags.hidden.map(Hidden::from);
+    match (metric, asked, preset) {
+        (Metric::Quadric, None | Some(Hidden::Keep), _) => Ok(Hidden::Keep),
+        (Metric::Quadric, Some(_), _) => Err(Error::Option {
+            name: "--hidden",
+            message: "--metric quadric does not look, so nothing is known to be hidden; use --metric visibility, with \
+                      --visibility-power 0 for quadric error on what can be seen"
+                .to_owned(),
+        }),
+        (Metric::Visibility, Some(asked), _) => Ok(asked),
+        (Metric::Visibility, None, Preset::Best) => Ok(Hidden::Delete),
+        (Metric::Visibility, None, Preset::Paper) => Ok(Hidden::Collapse),
     }
 }
 

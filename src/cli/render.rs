@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::console::Console;
 use super::estimate::Task;
 use super::failure::Failure;
-use super::flags::{ColourMapName, InputFlags, LookingFlags, names};
+use super::flags::{ColourMapName, InputFlags, LookingFlags, UpFlags, names};
 use super::outputs::{self, Kind, Planned};
 use super::presets;
 use super::values;
@@ -29,8 +29,10 @@ pub struct Flags {
     #[arg(long, value_name = "X,Y,Z", default_value = "1,-2,1", allow_hyphen_values = true)]
     #[arg(value_parser = values::direction)]
     camera: [f64; 3],
+    #[command(flatten)]
+    up: UpFlags,
     /// Pixels along the side
-    #[arg(long, value_name = "W", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(16..=16384))]
+    #[arg(long, value_name = "W", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(16..=8192))]
     size: u32,
     /// Heat colours: as in the paper, or readable for every eye
     #[arg(long, value_name = "NAME", default_value = "paper")]
@@ -88,6 +90,7 @@ fn request(flags: &Flags, console: &Console) -> outsight::Result<RenderRequest> 
         output: flags.output.clone(),
         style,
         camera: flags.camera,
+        up: flags.up.up,
         size: flags.size,
         colour_map: flags.colour_map.into(),
         legend: flags.legend || (style == Style::Heat && !flags.no_legend),

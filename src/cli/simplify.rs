@@ -6,20 +6,21 @@ use clap::{ArgGroup, Args};
 use outsight::Error;
 use outsight::pipeline::{LevelRequest, Metric, SimplifyReport, SimplifyRequest, run_simplify};
 use outsight::simplify::{SimplifyOptions, Target};
-use outsight::visibility::Hidden;
 use serde::Serialize;
+use serde_json::Value;
 
 use super::collapsing::CollapseFlags;
 use super::console::Console;
 use super::estimate::Task;
 use super::failure::Failure;
 use super::flags::{FormatName, InputFlags, LookingFlags};
+use super::in_force;
 use super::outputs::{self, Kind, Planned, is_pipe};
 use super::presets;
 use super::system::peak_mib;
 use super::text::{count, duration, table};
 use super::values::{self, LevelSize};
-use super::watch::Watch;
+use super::watch::{Found, Watch};
 
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new("size").required(true).multiple(true))]
@@ -57,20 +58,23 @@ struct Object<'a> {
     #[serde(flatten)]
     report: &'a SimplifyReport,
     peak_mb: Option<f64>,
+    #[serde(flatten)]
+    found: Found,
+    options: Value,
 }
 
 /// Reads, looks, simplifies, writes, prints.
 pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
     let request = request(flags, console)?;
     check_outputs(&request, console.global.json)?;
-    let looks = request.metric == Metric::Visibility || request.hidden != Hidden::Keep;
-    if looks {
+    if request.metric == Metric::Visibility {
         presets::announce_stand_ins(&flags.looking, console);
     }
     let task = Task::Simplify { resolution: request.measure.resolution.unwrap_or(0) };
     let watch = Watch::new(console, task).writing_mesh(true).deleting_knowingly(flags.collapse.hidden.is_some());
     let report = run_simplify(&request, &watch)?;
-    let object = Object { report: &report, peak_mb: peak_mib() };
+    let object =
+        Object { report: &report, peak_mb: peak_mib(), found: watch.found(), options: in_force::simplify(&request) };
     let to_stdout = !request.levels.iter().any(|level| is_pipe(&level.output));
     console.result(&object, &text(&report), to_stdout)
 }
@@ -83,7 +87,7 @@ fn request(flags: &Flags, console: &Console) -> outsight::Result<SimplifyRequest
         read: flags.input.reading.options(&console.global),
         metric,
         measure: presets::measure_options(&flags.looking, &console.global)?,
-        hidden: presets::hidden(&flags.collapse, preset, metric),
+        hidden: presets::hidden(&flags.collapse, preset, metric)?,
         visibility_power: presets::visibility_power(&flags.collapse),
         simplify: SimplifyOptions { max_error: flags.max_error, ..presets::simplify_options(&flags.collapse, preset)? },
         levels: levels(flags),

@@ -1,11 +1,13 @@
 //! What a command does when a mesh has been read or hidden triangles were found: warn, and check the memory.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 
 use outsight::error::{Error, Result};
-use outsight::io::{Dropped, Loaded};
+use outsight::io::Loaded;
 use outsight::pipeline::Observer;
 use outsight::progress::Progress;
+use serde::Serialize;
 
 use super::console::Console;
 use super::estimate::{Task, memory_bytes};
@@ -21,12 +23,37 @@ pub struct Watch<'a> {
     writes_mesh: bool,
     /// `--hidden delete` was spelled out, so that deleting needs no warning.
     deletes_knowingly: bool,
+    found: Mutex<Found>,
+}
+
+/// What the file held that the result does not: part of every JSON object about one mesh.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct Found {
+    /// The mesh file.
+    file: PathBuf,
+    /// Triangles of the file that were set aside.
+    set_aside: usize,
+    /// What the file held beyond triangles.
+    dropped: Vec<&'static str>,
+}
+
+impl Found {
+    /// What `path` held.
+    pub fn new(path: &Path, loaded: &Loaded) -> Self {
+        let dropped = loaded.dropped.iter().map(|d| d.name()).collect();
+        Self { file: path.to_owned(), set_aside: loaded.set_aside.count(), dropped }
+    }
+
+    /// The names of what was dropped, for a message; `None` if nothing was.
+    pub fn dropped_list(&self) -> Option<String> {
+        (!self.dropped.is_empty()).then(|| self.dropped.join(", "))
+    }
 }
 
 impl<'a> Watch<'a> {
     /// Watches a run that does `task`.
     pub fn new(console: &'a Console, task: Task) -> Self {
-        Self { console, task, writes_mesh: false, deletes_knowingly: false }
+        Self { console, task, writes_mesh: false, deletes_knowingly: false, found: Mutex::default() }
     }
 
     /// The run writes a mesh, or not.
@@ -37,6 +64,11 @@ impl<'a> Watch<'a> {
     /// The user asked for hidden triangles to be deleted, or it is the default.
     pub fn deleting_knowingly(self, deletes_knowingly: bool) -> Self {
         Self { deletes_knowingly, ..self }
+    }
+
+    /// What the file read last held.
+    pub fn found(&self) -> Found {
+        self.found.lock().map(|found| found.clone()).unwrap_or_default()
     }
 }
 
@@ -54,8 +86,12 @@ impl Observer for Watch<'_> {
     fn mesh_read(&self, path: &Path, loaded: &Loaded) -> Result<()> {
         let triangles = loaded.mesh.triangle_count();
         self.console.detail(&format!("{}: {} triangles", path.display(), count(triangles)));
-        if self.writes_mesh && !loaded.dropped.is_empty() {
-            self.console.warn(path, &format!("not carried over: {}", dropped_names(&loaded.dropped).join(", ")))?;
+        let found = Found::new(path, loaded);
+        if let Some(list) = found.dropped_list().filter(|_| self.writes_mesh) {
+            self.console.warn(path, &format!("not carried over: {list}"))?;
+        }
+        if let Ok(mut last) = self.found.lock() {
+            *last = found;
         }
         if let Some(message) = set_aside_message(loaded) {
             self.console.warn(path, &message)?;
@@ -102,9 +138,4 @@ fn check_memory(limit: Option<u64>, task: Task, triangles: usize) -> Result<()> 
         megabytes(needed)
     );
     Err(Error::Limit { message })
-}
-
-/// The names of what was dropped, as messages and JSON spell them.
-pub fn dropped_names(dropped: &[Dropped]) -> Vec<&'static str> {
-    dropped.iter().map(|d| d.name()).collect()
 }

@@ -85,31 +85,49 @@ impl Gallery {
         }
     }
 
-    /// One picture from the unit direction `toward`, upright with respect to `up`, each hit shaded by `brightness`
-    /// (triangle number and |n·d| to grey 0 to 255).
+    /// One picture from the unit direction `toward`, `up` upward, under a light beside the camera.
     ///
     /// # Errors
     /// [`crate::Error::Limit`] as [`image_errors`].
     pub fn picture(&self, toward: DVec3, up: DVec3, width: u32) -> Result<GreyImage> {
-        let window = Window { width: SAMPLES * width, half_width: self.half_width };
-        let view = View::upright(toward, up, window);
-        let buffers = self.draw(&view)?;
+        let buffers = self.draw(&self.upright(toward, up, width))?;
         Ok(shade(&buffers, buffers.near(), SAMPLES as usize, |hit| self.head_light(hit, toward)))
     }
 
-    /// What the camera at `toward` sees, sample by sample, bottom row first: `width` × `width` hits.
+    /// The same in colour: `colour` gives three channels, 0 to 255, for a hit and |n·d|; the background is white.
+    ///
+    /// Returns `width` × `width` RGB triples, top row first.
     ///
     /// # Errors
     /// [`crate::Error::Limit`] as [`image_errors`].
-    pub fn hits(&self, toward: DVec3, up: DVec3, width: u32) -> Result<Vec<Option<Hit>>> {
-        let view = View::upright(toward, up, Window { width, half_width: self.half_width });
-        Ok(self.draw(&view)?.near().collect())
+    pub fn coloured(
+        &self,
+        toward: DVec3,
+        up: DVec3,
+        width: u32,
+        colour: impl Fn(Hit, f64) -> [f64; 3],
+    ) -> Result<Vec<u8>> {
+        let buffers = self.draw(&self.upright(toward, up, width))?;
+        let channel = |c: usize| {
+            let hits = buffers.near().map(|hit| Some(hit.map_or(255.0, |h| colour(h, self.cosine(h, toward))[c])));
+            shade(&buffers, hits, SAMPLES as usize, |value| value).pixels
+        };
+        let [red, green, blue] = [0, 1, 2].map(channel);
+        let triples = red.iter().zip(&green).zip(&blue);
+        Ok(triples.flat_map(|((r, g), b)| [r, g, b].map(|&value| (value + 0.5) as u8)).collect())
     }
 
     /// Grey of a triangle under a light beside the camera: 255 |n·d|.
-    #[must_use]
-    pub fn head_light(&self, hit: Hit, toward: DVec3) -> f64 {
-        255.0 * self.normals[hit.triangle.0 as usize].dot(toward).abs()
+    fn head_light(&self, hit: Hit, toward: DVec3) -> f64 {
+        255.0 * self.cosine(hit, toward)
+    }
+
+    fn cosine(&self, hit: Hit, toward: DVec3) -> f64 {
+        self.normals[hit.triangle.0 as usize].dot(toward).abs()
+    }
+
+    fn upright(&self, toward: DVec3, up: DVec3, width: u32) -> View {
+        View::upright(toward, up, Window { width: SAMPLES * width, half_width: self.half_width })
     }
 
     fn both_ways(&self, axis: DVec3) -> Result<Pictures> {

@@ -98,6 +98,23 @@ pub struct Loaded {
     pub welded: Option<usize>,
 }
 
+impl Loaded {
+    /// Values of the mesh's triangles, one per triangle of the *file*: those that were set aside get `missing`.
+    #[must_use]
+    pub fn in_file_order(&self, values: &[f64], missing: f64) -> Vec<f64> {
+        let mut aside = [&self.set_aside.repeated_vertex[..], &self.set_aside.zero_area[..]].concat();
+        aside.sort_unstable();
+        let (mut values, mut aside) = (values.iter(), aside.into_iter().peekable());
+        let total = values.len() + aside.len();
+        (0..total as u32)
+            .map(|t| match aside.next_if_eq(&t) {
+                Some(_) => missing,
+                None => values.next().copied().unwrap_or(missing),
+            })
+            .collect()
+    }
+}
+
 /// Reads a mesh; `-` is standard input.
 ///
 /// # Errors

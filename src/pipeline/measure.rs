@@ -2,12 +2,9 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::{Observer, Stopwatch, as_progress, dropped_names, read};
-use crate::camera::{CameraSphere, Frame};
-use crate::error::{Error, Result};
-use crate::io::{self, Format, ReadOptions, TriangleAttributes, WriteOptions};
-use crate::mesh::TriMesh;
-use crate::raster::Scene;
+use crate::error::Result;
+use crate::io::{self, Loaded, ReadOptions, TriangleAttributes, WriteOptions};
+use crate::pipeline::{Clock, Observer};
 use crate::report::colour::ColourMap;
 use crate::visibility::{self, MeasureOptions, Visibility};
 
@@ -20,20 +17,20 @@ pub struct MeasureRequest {
     pub read: ReadOptions,
     /// How it is looked at.
     pub measure: MeasureOptions,
-    /// `.ply`, `.npy` or `.csv` to write.
+    /// A mesh file (PLY carries visibility and heat colours), `.npy` or `.csv` to write.
     pub output: Option<PathBuf>,
-    /// Colours of a `.ply` output.
+    /// Heat colours in a PLY output.
     pub colour_map: ColourMap,
     /// Replace an output that is there.
     pub force: bool,
 }
 
-/// What [`measure_file`] found; its fields are the keys of the JSON object.
+/// Result of [`measure_file`].
 #[derive(Debug, Clone, Serialize)]
 pub struct MeasureReport {
     /// Triangles looked at.
     pub triangles: usize,
-    /// Cameras that looked.
+    /// Cameras.
     pub cameras: usize,
     /// Pixels along an image's side.
     pub resolution: u32,
@@ -41,115 +38,84 @@ pub struct MeasureReport {
     pub backend: &'static str,
     /// What was counted.
     pub estimator: &'static str,
+    /// Which side of a triangle made its visibility.
+    pub sides: &'static str,
     /// The numbers.
     pub visibility: VisibilitySummary,
     /// Where the time went.
     pub seconds: MeasureSeconds,
-    /// The mesh file.
-    pub file: PathBuf,
-    /// Which side of a triangle counted for `mesh_sides`.
-    pub sides: &'static str,
-    /// Triangles of the file that were set aside.
-    pub set_aside: usize,
-    /// What the file held beyond triangles.
-    pub dropped: Vec<&'static str>,
 }
 
 /// Visibility of a whole mesh.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct VisibilitySummary {
-    /// One-sided, area-weighted, unclamped. Source: Zhang & Turk 2002, eq. (3.2).
+    /// V(M), one-sided. Source: Zhang & Turk 2002, eq. (3.2).
     pub mesh: f64,
     /// The same under the rule for sides.
     pub mesh_sides: f64,
-    /// Triangles that no camera sees from either side.
+    /// Triangles that no camera sees.
     pub never_seen: usize,
 }
 
-/// Wall time of each step, in seconds.
+/// Seconds of wall time per step.
 #[derive(Debug, Clone, Copy, Default, Serialize)]
 pub struct MeasureSeconds {
     /// Reading and checking the file.
     pub read: f64,
-    /// Preparing the mesh for the cameras.
+    /// Preparing to look.
     pub build: f64,
-    /// Looking and counting.
+    /// Looking.
     pub visibility: f64,
     /// All of it, writing included.
     pub total: f64,
 }
 
-impl VisibilitySummary {
-    pub(super) fn of(visibility: &Visibility) -> Self {
-        Self { mesh: visibility.of_mesh(), mesh_sides: visibility.of_mesh_sides(), never_seen: visibility.never_seen() }
-    }
-}
-
-/// Reads a mesh, measures it, and writes the visibility of each triangle where asked.
+/// Reads a mesh, looks at it, writes how visible each triangle is.
 ///
 /// # Errors
-/// Those of reading, measuring and writing, and of the observer.
+/// As its steps.
 pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result<MeasureReport> {
-    let mut clock = Stopwatch::start();
-    let mut seconds = MeasureSeconds::default();
+    let mut clock = Clock::start();
     request.measure.check()?;
-
-    let loaded = read(&request.input, &request.read, observer)?;
-    seconds.read = clock.lap_s();
-
-    let mesh = &loaded.mesh;
-    let cameras = CameraSphere::octahedral(request.measure.cameras, request.measure.camera_weights)?;
-    let scene = Scene::new(Frame::of(mesh).unit_copy(mesh));
-    seconds.build = clock.lap_s();
-
-    let visibility = visibility::measure_with(&scene, mesh, &cameras, &request.measure, as_progress(observer))?;
-    seconds.visibility = clock.lap_s();
-
+    let loaded = io::read(&request.input, &request.read)?;
+    observer.mesh_read(&request.input, &loaded)?;
+    let read = clock.lap();
+    let scene = visibility::scene_of(&loaded.mesh);
+    let build = clock.lap();
+    let visibility = visibility::measure_scene(&scene, &loaded.mesh, &request.measure, observer)?;
+    let looked = clock.lap();
     if let Some(output) = &request.output {
-        write(output, mesh, &visibility, request)?;
+        write(output, &loaded, &visibility, request)?;
     }
-    seconds.total = clock.total_s();
     Ok(MeasureReport {
-        triangles: mesh.triangle_count(),
+        triangles: loaded.mesh.triangle_count(),
         cameras: visibility.cameras(),
         resolution: visibility.resolution(),
         backend: request.measure.backend.name(),
         estimator: request.measure.estimator.name(),
-        visibility: VisibilitySummary::of(&visibility),
-        seconds,
-        file: request.input.clone(),
         sides: request.measure.sides.name(),
-        set_aside: loaded.set_aside.count(),
-        dropped: dropped_names(&loaded),
+        visibility: VisibilitySummary {
+            mesh: visibility.of_mesh(),
+            mesh_sides: visibility.of_mesh_sides(),
+            never_seen: visibility.never_seen(),
+        },
+        seconds: MeasureSeconds { read, build, visibility: looked, total: clock.total() },
     })
 }
 
-/// Writes the visibility of each triangle in the format that the name says.
-fn write(path: &Path, mesh: &TriMesh, visibility: &Visibility, request: &MeasureRequest) -> Result<()> {
+fn write(path: &Path, loaded: &Loaded, visibility: &Visibility, request: &MeasureRequest) -> Result<()> {
     let values = visibility.per_triangle();
-    match ending(path).as_str() {
-        "npy" => io::write_npy_f64(path, values, request.force),
-        "csv" => {
-            let columns = [("visibility", values), ("front", visibility.front()), ("back", visibility.back())];
-            io::write_visibility_csv(path, &columns, request.force)
-        }
-        _ if Format::of_path(path) == Some(Format::Ply) => {
-            let colours: Vec<[u8; 3]> = values.iter().map(|&v| request.colour_map.colour(v)).collect();
-            let attributes = TriangleAttributes { visibility: Some(values), colours: Some(&colours) };
-            io::write(path, mesh, &attributes, &WriteOptions { force: request.force, format: None })
+    match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
+        Some("npy") => io::write_npy_f64(path, &loaded.in_file_order(values, 0.0), request.force),
+        Some("csv") => {
+            let columns = [values, visibility.front(), visibility.back()].map(|v| loaded.in_file_order(v, 0.0));
+            let named = ["visibility", "front", "back"].into_iter().zip(columns.iter().map(Vec::as_slice));
+            io::write_visibility_csv(path, &named.collect::<Vec<_>>(), request.force)
         }
         _ => {
-            let message = format!("{}: name a file that ends in .ply, .npy or .csv", path.display());
-            Err(Error::Option { name: "--output", message })
+            let colours: Vec<[u8; 3]> = values.iter().map(|&v| request.colour_map.colour(v)).collect();
+            let attributes = TriangleAttributes { visibility: Some(values), colours: Some(&colours) };
+            io::write(path, &loaded.mesh, &attributes, &WriteOptions { force: request.force, format: None })
         }
-    }
-}
-
-/// The lower-case extension, that of compression put aside.
-fn ending(path: &Path) -> String {
-    let lower = |p: &Path| p.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-    match lower(path).as_str() {
-        "gz" | "zst" => lower(&path.with_extension("")),
-        own => own.to_owned(),
     }
 }

@@ -1,16 +1,13 @@
-use std::borrow::Cow;
 use std::path::PathBuf;
 
 use serde::Serialize;
 
-use super::{Observer, Stopwatch, VisibilitySummary, as_progress, dropped_names, read};
-use crate::camera::{CameraSphere, Frame};
-use crate::error::Result;
-use crate::io::{self, Format, ReadOptions, TriangleAttributes, WriteOptions};
-use crate::mesh::TriMesh;
-use crate::raster::Scene;
-use crate::simplify::{self, Level, SimplifyOptions, Stop, Target};
-use crate::visibility::{self, Hidden, MeasureOptions, Visibility, hidden_triangles};
+use crate::error::{Error, Result};
+use crate::io::{Format, ReadOptions};
+use crate::mesh::{Subset, TriMesh};
+use crate::pipeline::Observer;
+use crate::simplify::{Level, SimplifyOptions, Stop, Target, TopologyChange, simplify};
+use crate::visibility::{Hidden, Look, MeasureOptions, importance};
 
 /// What orders the collapses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -36,13 +33,13 @@ impl Metric {
 /// One level of detail to make.
 #[derive(Debug, Clone)]
 pub struct LevelRequest {
-    /// The one that asks for most triangles ends the level; empty only with an error bound.
+    /// The first one reached ends the level; empty only with an error bound.
     pub targets: Vec<Target>,
-    /// Where it goes; `-` is standard output.
+    /// Where it goes.
     pub output: PathBuf,
 }
 
-/// What [`run_simplify`] does.
+/// What [`super::run_simplify`] does.
 #[derive(Debug, Clone)]
 pub struct SimplifyRequest {
     /// The mesh.
@@ -51,13 +48,13 @@ pub struct SimplifyRequest {
     pub read: ReadOptions,
     /// What orders the collapses.
     pub metric: Metric,
-    /// How visibility is measured; only where `metric` or `hidden` needs it.
+    /// How visibility is measured, where it is needed.
     pub measure: MeasureOptions,
-    /// What becomes of triangles that nobody sees. Under [`Metric::Quadric`], `Keep` and `Collapse` change nothing.
+    /// What happens to hidden triangles; counts with [`Metric::Visibility`] only.
     pub hidden: Hidden,
-    /// p in V^p, the weight of a triangle's error.
+    /// p in V^p, 0 to 16.
     pub visibility_power: f64,
-    /// How edges collapse; its targets are replaced by those of `levels`.
+    /// The collapser's options; its `targets` are those of `levels`.
     pub simplify: SimplifyOptions,
     /// Levels of detail, each at most as large as the one before.
     pub levels: Vec<LevelRequest>,
@@ -67,7 +64,75 @@ pub struct SimplifyRequest {
     pub force: bool,
 }
 
-/// What [`run_simplify`] made; its fields are the keys of the JSON object.
+impl SimplifyRequest {
+    /// Checks what can be checked before the mesh is read.
+    pub(super) fn check(&self) -> Result<()> {
+        self.measure.check()?;
+        if self.levels.len() > 1 && self.levels.iter().any(|level| level.targets.is_empty()) {
+            let message = "several levels need a target each; an error bound alone makes one".to_owned();
+            return Err(Error::Option { name: "--lods", message });
+        }
+        // The targets are checked against 1 triangle here, and again with the mesh's own count.
+        let targets: Vec<Target> = self.levels.iter().flat_map(|level| level.targets.iter().copied()).collect();
+        SimplifyOptions { targets, ..self.simplify.clone() }.check()
+    }
+
+    /// One triangle count per level, of `given` triangles; none where only an error bound ends the run.
+    fn targets(&self, given: usize) -> Vec<Target> {
+        let first_reached = |level: &LevelRequest| level.targets.iter().map(|target| target.count(given)).max();
+        self.levels.iter().filter_map(first_reached).map(Target::Triangles).collect()
+    }
+}
+
+/// Levels of detail of a mesh.
+#[derive(Debug, Clone)]
+pub struct Simplified {
+    /// From large to small. Their maps start from the mesh given, hidden triangles included.
+    pub levels: Vec<Level>,
+    /// Hidden triangles that were removed before simplifying.
+    pub hidden_deleted: usize,
+}
+
+/// Simplifies a mesh that was looked at; `look` is `None` for [`Metric::Quadric`].
+///
+/// # Errors
+/// As [`simplify`] and [`importance`]; [`Error::ShapeMismatch`] if `look` was taken at another mesh.
+pub fn simplify_seen(
+    mesh: TriMesh,
+    look: Option<Look>,
+    request: &SimplifyRequest,
+    observer: &dyn Observer,
+) -> Result<Simplified> {
+    let given = mesh.triangle_count();
+    let options = request.simplify.clone().with_targets(request.targets(given));
+    let Some(look) = look else {
+        return Ok(Simplified { levels: simplify(&mesh, None, &options, observer)?, hidden_deleted: 0 });
+    };
+    let weights = importance(&look.visibility, request.hidden, request.visibility_power)?;
+    let seen = look.hidden.iter().any(|&h| h).then(|| mesh.subset(|t| !look.hidden[t])).flatten();
+    let Some(seen) = seen else {
+        return Ok(Simplified { levels: simplify(&mesh, Some(&weights), &options, observer)?, hidden_deleted: 0 });
+    };
+    drop(mesh);
+    let hidden_deleted = given - seen.mesh.triangle_count();
+    observer.hidden_deleted(hidden_deleted, given)?;
+    let weights: Vec<f64> = weights.iter().zip(&look.hidden).filter(|(_, hidden)| !**hidden).map(|(&w, _)| w).collect();
+    drop(look);
+    let mut levels = simplify(&seen.mesh, Some(&weights), &options, observer)?;
+    levels.iter_mut().for_each(|level| start_from_whole(level, &seen));
+    Ok(Simplified { levels, hidden_deleted })
+}
+
+/// Puts the way from the whole mesh to its seen part before the maps of a level.
+fn start_from_whole(level: &mut Level, seen: &Subset) {
+    let through = |first: &[Option<u32>], then: &[Option<u32>]| -> Vec<Option<u32>> {
+        first.iter().map(|&id| id.and_then(|id| then[id as usize])).collect()
+    };
+    level.vertex_map = through(&seen.vertex_map, &level.vertex_map);
+    level.triangle_map = through(&seen.triangle_map, &level.triangle_map);
+}
+
+/// Result of [`super::run_simplify`].
 #[derive(Debug, Clone, Serialize)]
 pub struct SimplifyReport {
     /// One entry per level.
@@ -76,18 +141,10 @@ pub struct SimplifyReport {
     pub triangles: usize,
     /// What ordered the collapses.
     pub metric: &'static str,
+    /// Hidden triangles that were removed before simplifying.
+    pub hidden_deleted: usize,
     /// Where the time went.
     pub seconds: SimplifySeconds,
-    /// What happened to triangles that nobody sees.
-    pub hidden: &'static str,
-    /// How many of them were deleted before simplifying.
-    pub hidden_deleted: usize,
-    /// Visibility of the mesh given, where it was measured.
-    pub visibility: Option<VisibilitySummary>,
-    /// Triangles of the file that were set aside.
-    pub set_aside: usize,
-    /// What the file held beyond triangles.
-    pub dropped: Vec<&'static str>,
 }
 
 /// One level of detail, as made.
@@ -103,31 +160,16 @@ pub struct LevelReport {
     pub error: f64,
     /// The file.
     pub file: PathBuf,
-    /// What changed in the topology, against the mesh without deleted triangles.
-    pub topology: TopologyReport,
+    /// What changed in the topology, hidden triangles that were removed not counted.
+    pub topology: TopologyChange,
 }
 
-/// What changed in the topology, result minus input.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub struct TopologyReport {
-    /// Pairs of triangles back to back that were cancelled.
-    pub cancelled_pairs: usize,
-    /// Edges with three or more triangles.
-    pub non_manifold_edges: i64,
-    /// Connected components.
-    pub components: i64,
-    /// Border edges.
-    pub boundary_edges: i64,
-    /// Euler characteristic.
-    pub euler_characteristic: i64,
-}
-
-/// Wall time of each step, in seconds.
+/// Seconds of wall time per step.
 #[derive(Debug, Clone, Copy, Default, Serialize)]
 pub struct SimplifySeconds {
     /// Reading and checking the file.
     pub read: f64,
-    /// Measuring visibility and finding what is hidden.
+    /// Measuring visibility, hidden triangles included.
     pub visibility: f64,
     /// Collapsing.
     pub simplify: f64,
@@ -137,125 +179,35 @@ pub struct SimplifySeconds {
     pub total: f64,
 }
 
-/// Reads a mesh, looks at it, simplifies it where nobody looks, writes every level.
-///
-/// # Errors
-/// Those of reading, measuring, simplifying and writing, and of the observer.
-pub fn run_simplify(request: &SimplifyRequest, observer: &dyn Observer) -> Result<SimplifyReport> {
-    let mut clock = Stopwatch::start();
-    let mut seconds = SimplifySeconds::default();
-
-    let loaded = read(&request.input, &request.read, observer)?;
-    let given = loaded.mesh.triangle_count();
-    let options = options(request, given);
-    options.check()?;
-    seconds.read = clock.lap_s();
-
-    let seen = look(&loaded.mesh, request, observer)?;
-    let work = weigh(&loaded.mesh, seen.as_ref(), request)?;
-    let hidden_deleted = given - work.mesh.triangle_count();
-    if hidden_deleted > 0 {
-        observer.hidden_deleted(hidden_deleted, given)?;
-    }
-    seconds.visibility = clock.lap_s();
-
-    let levels = simplify::simplify(&work.mesh, work.importance.as_deref(), &options, as_progress(observer))?;
-    seconds.simplify = clock.lap_s();
-
-    write(&levels, request, observer)?;
-    seconds.write = clock.lap_s();
-    seconds.total = clock.total_s();
-    Ok(SimplifyReport {
-        levels: levels.iter().zip(&request.levels).map(|(level, asked)| report(level, asked)).collect(),
-        triangles: given,
-        metric: request.metric.name(),
-        seconds,
-        hidden: request.hidden.name(),
-        hidden_deleted,
-        visibility: seen.as_ref().map(|s| VisibilitySummary::of(&s.visibility)),
-        set_aside: loaded.set_aside.count(),
-        dropped: dropped_names(&loaded),
-    })
-}
-
-/// The collapser's options, with one count per level: of several targets the one reached first, which is the largest.
-fn options(request: &SimplifyRequest, given: usize) -> SimplifyOptions {
-    let largest = |level: &LevelRequest| level.targets.iter().map(|target| target.count(given)).max();
-    let targets = request.levels.iter().filter_map(largest).map(Target::Triangles).collect();
-    request.simplify.clone().with_targets(targets)
-}
-
-/// What looking at a mesh found.
-struct Seen {
-    visibility: Visibility,
-    /// Triangles to delete, where that was asked.
-    hidden: Option<Vec<bool>>,
-}
-
-fn look(mesh: &TriMesh, request: &SimplifyRequest, observer: &dyn Observer) -> Result<Option<Seen>> {
-    let deletes = request.hidden == Hidden::Delete;
-    if request.metric == Metric::Quadric && !deletes {
-        return Ok(None);
-    }
-    let (options, progress) = (&request.measure, as_progress(observer));
-    options.check()?;
-    let cameras = CameraSphere::octahedral(options.cameras, options.camera_weights)?;
-    let scene = Scene::new(Frame::of(mesh).unit_copy(mesh));
-    let visibility = visibility::measure_with(&scene, mesh, &cameras, options, progress)?;
-    let hidden = if deletes { Some(hidden_triangles(&scene, mesh, &visibility, options, progress)?) } else { None };
-    Ok(Some(Seen { visibility, hidden }))
-}
-
-/// The mesh to simplify, and how much the error of each of its triangles counts.
-struct Work<'a> {
-    mesh: Cow<'a, TriMesh>,
-    importance: Option<Vec<f64>>,
-}
-
-fn weigh<'a>(mesh: &'a TriMesh, seen: Option<&Seen>, request: &SimplifyRequest) -> Result<Work<'a>> {
-    let Some(seen) = seen else { return Ok(Work { mesh: Cow::Borrowed(mesh), importance: None }) };
-    let all = match request.metric {
-        Metric::Visibility => Some(visibility::importance(&seen.visibility, request.hidden, request.visibility_power)?),
-        Metric::Quadric => None,
-    };
-    let some_hidden = seen.hidden.as_ref().filter(|hidden| hidden.contains(&true));
-    let part = some_hidden.and_then(|hidden| Some((hidden, mesh.subset(|t| !hidden[t])?)));
-    Ok(match part {
-        None => Work { mesh: Cow::Borrowed(mesh), importance: all },
-        Some((hidden, part)) => {
-            let kept = |all: Vec<f64>| all.iter().zip(hidden).filter(|(_, h)| !**h).map(|(&w, _)| w).collect();
-            Work { mesh: Cow::Owned(part.mesh), importance: all.map(kept) }
+impl SimplifyReport {
+    pub(super) fn new(
+        request: &SimplifyRequest,
+        triangles: usize,
+        simplified: &Simplified,
+        seconds: SimplifySeconds,
+    ) -> Self {
+        let level = |(level, wanted): (&Level, &LevelRequest)| LevelReport {
+            target: level.target,
+            output: level.mesh.triangle_count(),
+            stop: stop_name(level.stop),
+            error: level.error,
+            file: wanted.output.clone(),
+            topology: level.topology,
+        };
+        Self {
+            levels: simplified.levels.iter().zip(&request.levels).map(level).collect(),
+            triangles,
+            metric: request.metric.name(),
+            hidden_deleted: simplified.hidden_deleted,
+            seconds,
         }
-    })
-}
-
-fn write(levels: &[Level], request: &SimplifyRequest, observer: &dyn Observer) -> Result<()> {
-    let options = WriteOptions { force: request.force, format: request.format };
-    for (level, asked) in levels.iter().zip(&request.levels) {
-        observer.check()?;
-        io::write(&asked.output, &level.mesh, &TriangleAttributes::default(), &options)?;
     }
-    Ok(())
 }
 
-fn report(level: &Level, asked: &LevelRequest) -> LevelReport {
-    let change = level.topology;
-    LevelReport {
-        target: level.target,
-        output: level.mesh.triangle_count(),
-        stop: match level.stop {
-            Stop::Target => "target",
-            Stop::Error => "error",
-            Stop::QueueEmpty => "queue_empty",
-        },
-        error: level.error,
-        file: asked.output.clone(),
-        topology: TopologyReport {
-            cancelled_pairs: change.cancelled_pairs,
-            non_manifold_edges: change.non_manifold_edges,
-            components: change.components,
-            boundary_edges: change.boundary_edges,
-            euler_characteristic: change.euler_characteristic,
-        },
+fn stop_name(stop: Stop) -> &'static str {
+    match stop {
+        Stop::Target => "target",
+        Stop::Error => "error",
+        Stop::QueueEmpty => "queue_empty",
     }
 }

@@ -1,4 +1,4 @@
-use crate::raster::{Hit, ItemBufferPair};
+use crate::raster::ItemBufferPair;
 
 /// A grey picture, 0 black to 255 white, top row first.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,14 +11,14 @@ pub struct GreyImage {
 
 /// What a camera sees, each `samples` × `samples` block of its buffer averaged into one pixel of grey.
 ///
-/// `brightness` gives the grey of a hit, 0 to 255; the background is 0. The buffer's width must be a multiple of
+/// `brightness` gives the grey of a hit, 0 to 255; where there is none it is 0. The buffer's width must be a multiple of
 /// `samples`. `hits` comes row after row, bottom row first, as [`ItemBufferPair::near`] gives it.
 #[must_use]
-pub fn shade(
+pub fn shade<H>(
     buffers: &ItemBufferPair,
-    hits: impl Iterator<Item = Option<Hit>>,
+    hits: impl Iterator<Item = Option<H>>,
     samples: usize,
-    brightness: impl Fn(Hit) -> f64,
+    brightness: impl Fn(H) -> f64,
 ) -> GreyImage {
     let sampled_width = buffers.window().width as usize;
     let width = sampled_width / samples;

@@ -78,7 +78,7 @@ pub enum Stop {
 }
 
 /// What a run changed in the topology, against its input.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize)]
 pub struct TopologyChange {
     /// Pairs of triangles back to back that were cancelled.
     pub cancelled_pairs: usize,

@@ -114,10 +114,51 @@ impl Visibility {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn measure(mesh: &TriMesh, options: &MeasureOptions, progress: &dyn Progress) -> Result<Visibility> {
+    measure_scene(&scene_of(mesh), mesh, options, progress)
+}
+
+/// What [`measure`] does before it looks: lays out `mesh` for drawing, in its own [`Frame`].
+#[must_use]
+pub fn scene_of(mesh: &TriMesh) -> Scene {
+    Scene::new(Frame::of(mesh).unit_copy(mesh))
+}
+
+/// The rest of [`measure`]: looks at `mesh`, laid out as `scene`.
+///
+/// # Errors
+/// As [`measure`].
+pub fn measure_scene(
+    scene: &Scene,
+    mesh: &TriMesh,
+    options: &MeasureOptions,
+    progress: &dyn Progress,
+) -> Result<Visibility> {
     options.check()?;
     let cameras = CameraSphere::octahedral(options.cameras, options.camera_weights)?;
-    let scene = Scene::new(Frame::of(mesh).unit_copy(mesh));
-    measure_with(&scene, mesh, &cameras, options, progress)
+    measure_with(scene, mesh, &cameras, options, progress)
+}
+
+/// What the simplifier needs to know of a mesh: how visible each triangle is, and which may go unseen.
+#[derive(Debug, Clone)]
+pub struct Look {
+    /// The visibility.
+    pub visibility: Visibility,
+    /// The triangles to remove, one entry per triangle; none are marked unless [`Hidden::Delete`] asks for it.
+    pub hidden: Vec<bool>,
+}
+
+/// Measures `mesh`, and finds what can be removed unseen where `hidden` asks for it.
+///
+/// # Errors
+/// As [`measure`].
+pub fn look(mesh: &TriMesh, options: &MeasureOptions, hidden: Hidden, progress: &dyn Progress) -> Result<Look> {
+    let scene = scene_of(mesh);
+    let visibility = measure_scene(&scene, mesh, options, progress)?;
+    let hidden = match hidden {
+        Hidden::Delete => hidden_triangles(&scene, mesh, &visibility, options, progress)?,
+        Hidden::Keep | Hidden::Collapse => vec![false; mesh.triangle_count()],
+    };
+    Ok(Look { visibility, hidden })
 }
 
 /// Like [`measure`], with a backend and cameras of the caller's.

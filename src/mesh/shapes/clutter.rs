@@ -38,7 +38,7 @@ fn piece(i: usize, random: &mut Pcg32) -> TriMesh {
         let turned = DMat3::from_quat(random.rotation()) * DMat3::from_diagonal(scale);
         transformed(mesh, &DAffine3::from_mat3_translation(turned, centre)).expect("clutter stays inside the unit cube")
     };
-    if i % 2 == 0 { boxed(radius, placed) } else { ball(radius, placed) }
+    if i.is_multiple_of(2) { boxed(radius, placed) } else { ball(radius, placed) }
 }
 
 fn boxed(radius: f64, placed: impl FnOnce(&TriMesh, DVec3) -> TriMesh) -> TriMesh {

@@ -1,4 +1,4 @@
-//! Generated meshes: test pieces whose visibility is known in closed form.
+//! Generated meshes: test pieces whose visibility is known in closed form, and the bundled gearbox.
 //!
 //! Every function returns a valid mesh, outward and counter-clockwise, and the same bytes on every machine: angles go
 //! through `libm`, and nothing depends on hash order. Inner surfaces given as sheets without thickness turn their
@@ -9,6 +9,8 @@ mod cavity;
 mod clutter;
 mod facing;
 mod flat;
+pub mod gearbox;
+mod outline;
 mod revolve;
 mod round;
 
@@ -22,6 +24,7 @@ pub use cavity::{
 pub use clutter::{cluttered_open_box, cluttered_sealed_box};
 pub use facing::{coaxial_discs, parallel_squares, right_angle_squares, wedge};
 pub use flat::{cuboid, sheet, tetrahedron};
+pub use gearbox::{Assembly, gearbox};
 pub use round::{bumpy_sphere, disc, ellipsoid, icosphere, torus, uv_sphere};
 
 use std::ops::Range;
