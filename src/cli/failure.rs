@@ -82,7 +82,9 @@ pub fn report_bugs() {
 }
 
 fn bug_message(info: &PanicHookInfo<'_>) -> String {
-    let what = info.payload_as_str().unwrap_or("no message");
+    let payload = info.payload();
+    let text = payload.downcast_ref::<&str>().copied().or_else(|| payload.downcast_ref::<String>().map(String::as_str));
+    let what = text.unwrap_or("no message");
     let place = info.location().map(|l| format!("{}:{}", l.file(), l.line())).unwrap_or_default();
     format!("error: bug in Outsight {} at {place}: {what}\n{REPORT_TO}", env!("CARGO_PKG_VERSION"))
 }

@@ -92,13 +92,18 @@ fn check_ending(output: Planned<'_>) -> Result<()> {
     // A hidden file such as `.ply` has a name and no ending.
     let ending = if output.format.is_some() { String::new() } else { ending_of(&base) };
     let known = output.format.is_some() || output.kind.endings().contains(&ending.as_str());
-    if known && !(compressed && output.kind == Kind::Picture) { Ok(()) } else { Err(needs_name(output.kind)) }
+    let may_compress = output.kind == Kind::Mesh || ending == "ply";
+    if known && (may_compress || !compressed) { Ok(()) } else { Err(needs_name(output.kind)) }
 }
 
 fn needs_name(kind: Kind) -> Error {
     let endings: Vec<String> = kind.endings().iter().map(|e| format!(".{e}")).collect();
     let message = format!("name a file that ends in {}", endings.join(", "));
-    let more = if kind == Kind::Picture { "" } else { "; .zst or .gz behind it compresses" };
+    let more = match kind {
+        Kind::Mesh => "; .zst or .gz behind it compresses",
+        Kind::Visibility => "; .zst or .gz behind .ply compresses",
+        Kind::Picture => "",
+    };
     Error::Option { name: "--output", message: message + more }
 }
 
@@ -157,8 +162,10 @@ mod tests {
             let error = check(mesh(Path::new(name)), &[], false).unwrap_err();
             assert_eq!(error.exit_code(), 2, "{name}");
         }
-        let png = Planned { path: Path::new("x.png.gz"), kind: Kind::Picture, format: None };
-        assert_eq!(check(png, &[], false).unwrap_err().exit_code(), 2);
+        for (name, kind) in [("x.png.gz", Kind::Picture), ("x.npy.zst", Kind::Visibility), ("-", Kind::Mesh)] {
+            let planned = Planned { path: Path::new(name), kind, format: None };
+            assert_eq!(check(planned, &[], false).unwrap_err().exit_code(), 2, "{name}");
+        }
     }
 
     #[test]

@@ -18,7 +18,7 @@ use super::in_force;
 use super::outputs::{self, Kind, Planned, is_pipe};
 use super::presets;
 use super::system::peak_mib;
-use super::text::{count, duration, table};
+use super::text::{count, duration, significant, table};
 use super::values::{self, LevelSize};
 use super::watch::{Found, Watch};
 
@@ -130,7 +130,7 @@ fn text(report: &SimplifyReport) -> String {
             level.file.display().to_string(),
             count(level.output),
             format!("{:.2} %", 100.0 * level.output as f64 / report.triangles as f64),
-            format!("{:.4e}", level.error),
+            significant(level.error),
             stop_in_words(level.stop).to_owned(),
         ]
     };

@@ -32,6 +32,19 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
+/// A length with four digits that matter: `47.97`, `0.001234`, `1.234e-9`.
+pub fn significant(length: f64) -> String {
+    if length == 0.0 {
+        return "0".to_owned();
+    }
+    if !(1e-4..1e6).contains(&length.abs()) {
+        return format!("{length:.3e}");
+    }
+    let digits_before = length.abs().log10().floor() as i32;
+    let digits_behind = usize::try_from(3 - digits_before).unwrap_or(0);
+    format!("{length:.digits_behind$}")
+}
+
 /// Lines of a name and what belongs to it, the second column aligned.
 pub fn pairs(rows: &[(&str, String)]) -> String {
     let width = rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
@@ -66,6 +79,12 @@ mod tests {
     #[test]
     fn thousands_are_set_apart() {
         assert_eq!([0, 999, 1000, 871_414, 1_000_000].map(count), ["0", "999", "1,000", "871,414", "1,000,000"]);
+    }
+
+    #[test]
+    fn lengths_keep_four_digits() {
+        let shown = [0.0, 47.971, 0.001_234_5, 123_456.7, 1.234e-9, 2.5e9].map(significant);
+        assert_eq!(shown, ["0", "47.97", "0.001234", "123457", "1.234e-9", "2.500e9"]);
     }
 
     #[test]
