@@ -55,9 +55,9 @@ fn chosen_resolution(triangles: u64) -> u32 {
 }
 
 /// Seconds of one thread per triangle and camera axis, measured on scans of 0.1 to 1 million triangles.
-const SECONDS_PER_TRIANGLE_AXIS: f64 = 3.5e-8;
+const SECONDS_PER_TRIANGLE_AXIS: f64 = 4e-8;
 /// Seconds of one thread per pixel and camera axis: clearing and counting.
-const SECONDS_PER_PIXEL_AXIS: f64 = 4e-9;
+const SECONDS_PER_PIXEL_AXIS: f64 = 1.5e-8;
 /// Triangles that one thread takes away in a second.
 const COLLAPSED_TRIANGLES_PER_SECOND: f64 = 250_000.0;
 
