@@ -174,8 +174,8 @@ fn messages_say_what_where_and_what_next() {
         ("a.ply", ply(triangle, "-3 0 1 2\n"), "a.ply, line 13: a list cannot have -3 items"),
         (
             "a.ply",
-            ply("0 0 0\n1 0 0 7\n0 1 0\n", "3 0 1 2\n"),
-            "a.ply, line 11: `7` is one more than the header names for a row",
+            ply("0 0 0\n1 0\n0 1 0\n", "3 0 1 2\n"),
+            "a.ply, line 12: the row that began in line 11 ends before `1`",
         ),
         (
             "a.off",

@@ -191,6 +191,16 @@ fn ascii_ply_with_bit_named_types_texture_file_and_edges() {
 }
 
 #[test]
+fn ascii_ply_with_more_in_a_line_than_its_header_names() {
+    let file = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+                element face 1\nproperty list uchar int vertex_indices\nproperty uchar red\nend_header\n\
+                0 0 0\n1 0 0\n0 1 0\n3 0 1 2 9 1 1 1 1 1 1 1 1 1\n";
+    let loaded = parse("a.ply", file.as_bytes());
+    assert_eq!(loaded.mesh.triangles(), [[0, 1, 2]]);
+    assert_eq!(loaded.dropped, [Dropped::Colours, Dropped::OtherProperties]);
+}
+
+#[test]
 fn tristrips_turn_every_other_triangle_and_restart() {
     //  1---3---5
     //  | \ | \ |
@@ -256,7 +266,7 @@ fn concave_polygon_of_66_corners_becomes_64_triangles_of_its_area() {
     assert_eq!(loaded.mesh.triangle_count(), 64);
     let doubled: Vec<f64> = corners(&loaded.mesh).iter().map(|[a, b, c]| (b - a).cross(c - a).z).collect();
     assert!(doubled.iter().all(|&a| a > 0.0));
-    // The last corner, at the origin's right, is left out: half a tooth and a corner of the bar are gone.
+    // The saw's 67th corner, (0, 0), is left out, so its area is taken from the corners themselves.
     assert!((doubled.iter().sum::<f64>() - 2.0 * shoelace(&loaded.mesh)).abs() < 1e-12);
 }
 

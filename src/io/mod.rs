@@ -1,7 +1,7 @@
 //! Mesh files, in and out: PLY, OBJ, STL, OFF, each also compressed (`.zst`, `.gz`) or through a pipe (`-`).
 //!
 //! One file a format. Every reader is a function of bytes, [`parse`], apart from the file that they came from; it
-//! ends in a [`soup`], which becomes a mesh in one place. All readers are our own: they name the line or byte of what
+//! ends in triangles and polygons, which become a mesh in one place. All readers are our own: they name the line or byte of what
 //! is wrong and they allocate by what the file holds, never by what it promises. The crates that were tried give no
 //! line numbers (`tobj`), make triangles of lines (`tobj`), or lose solids (`stl_io`); polygons go to `earcut`.
 //!

@@ -137,8 +137,8 @@ impl Cutter {
             }
         }
         let all_turn_left = self.local.iter().all(|t| turns_left(t.map(|i| self.flat[i])));
-        let good_enough = all_corners_used || self.flat.len() > MOST_CLIPPED;
-        if !(all_turn_left && good_enough) && !clip_ears(&self.flat, &mut self.local) {
+        let is_done = all_turn_left && (all_corners_used || self.flat.len() > MOST_CLIPPED);
+        if !is_done && !clip_ears(&self.flat, &mut self.local) {
             fan(self.flat.len(), &mut self.local);
         }
     }

@@ -210,6 +210,22 @@ mod tests {
         }
     }
 
+    #[cfg(feature = "zstd")]
+    #[test]
+    fn zstd_is_unpacked_and_its_every_truncation_and_damage_is_an_error() {
+        let mut packed = zstd::stream::encode_all(&b"some bytes that are not worth packing"[..], 3).unwrap();
+        let name = FileName::of(Path::new("a.ply.zst"));
+        let read = |packed: &[u8]| unpack(packed, packed.len() as u64, &name, None);
+        assert_eq!(read(&packed).unwrap(), b"some bytes that are not worth packing");
+        for end in 0..packed.len() {
+            let error = read(&packed[..end]).unwrap_err();
+            assert!(matches!(error, Error::Parse { .. }), "{end}: {error}");
+        }
+        packed[4] ^= 0xff;
+        let error = read(&packed).unwrap_err();
+        assert!(matches!(error, Error::Parse { .. }), "{error}");
+    }
+
     #[test]
     fn name_that_promises_compression_must_keep_it() {
         let error = read_gzip(b"ply\n", None).unwrap_err();

@@ -1,4 +1,4 @@
-use crate::mesh::{TriMesh, TriangleId};
+use crate::mesh::TriMesh;
 
 /// Which triangles meet at each vertex: the way from a triangle to its neighbours.
 #[derive(Debug, Clone)]
@@ -48,23 +48,5 @@ impl VertexTriangles {
         ring.dedup();
         ring.retain(|t| set.binary_search(t).is_err());
         ring
-    }
-
-    /// Whether `condition` holds for a triangle and all triangles within `rings` rings around it.
-    #[must_use]
-    pub fn all_within(&self, mesh: &TriMesh, t: TriangleId, rings: usize, condition: impl Fn(u32) -> bool) -> bool {
-        let mut set = vec![t.0];
-        if !condition(t.0) {
-            return false;
-        }
-        for _ in 0..rings {
-            let ring = self.next_ring(mesh, &set);
-            if !ring.iter().all(|&n| condition(n)) {
-                return false;
-            }
-            set.extend(ring);
-            set.sort_unstable();
-        }
-        true
     }
 }

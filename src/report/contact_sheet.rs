@@ -21,7 +21,7 @@ const LEGEND_WIDTH: u32 = 320;
 pub const RED: [u8; 3] = [222, 0, 0];
 
 const TITLE: TextStyle = TextStyle { font: Font::Large, scale: 1, colour: super::picture::INK };
-const TEXT: TextStyle = TextStyle { font: Font::Small, scale: 1, colour: super::picture::INK };
+const HEADING: TextStyle = TextStyle { font: Font::Bold, scale: 1, colour: super::picture::INK };
 const QUIET: TextStyle = TextStyle { font: Font::Small, scale: 1, colour: FAINT };
 
 /// What is drawn where nothing was hit, that is where a grey level is exactly 0.
@@ -100,7 +100,7 @@ impl Images<'_> {
 #[must_use]
 pub fn mesh_caption(triangles: usize, image_rmse: Option<f64>) -> String {
     let count = format!("{} triangles", thousands(triangles as u64));
-    image_rmse.map_or(count.clone(), |error| format!("{count} · image RMSE {error:.1}"))
+    image_rmse.map_or(count.clone(), |error| format!("{count} · image\u{a0}RMSE\u{a0}{error:.1}"))
 }
 
 impl ContactSheet<'_> {
@@ -128,9 +128,10 @@ impl ContactSheet<'_> {
             sheet.text(caption, MARGIN, middle, QUIET);
         }
         if let Some(key) = self.difference_key(&layout) {
-            // The key's bar begins at the left edge of the first difference column.
+            // The key's bar begins at the left edge of the first difference column, where there is room for it.
             let column = self.columns.iter().position(|c| matches!(c.images, Images::Difference(_))).unwrap_or(0);
-            let left = layout.column_left(column).min(layout.width - MARGIN / 2 - key.width());
+            let left = layout.column_left(column) - legend::SIDE;
+            let left = left.min(layout.width.saturating_sub(MARGIN / 2 + key.width()));
             sheet.blit(&key, left, layout.key_top());
         }
         Ok(sheet)
@@ -225,7 +226,7 @@ impl Layout {
         let title = text_block(&sheet.title, &sheet.subtitle, TITLE, width - 2 * MARGIN);
         let column_width = sheet.image_size[0];
         let headings: Vec<_> =
-            sheet.columns.iter().map(|c| text_block(&c.heading, &c.caption, TEXT, column_width)).collect();
+            sheet.columns.iter().map(|c| text_block(&c.heading, &c.caption, HEADING, column_width)).collect();
         let after = |top: u32, height: u32, gap: u32| if height > 0 { top + height + gap } else { top };
         let headings_top = after(MARGIN, height_of(&title), BLOCK_GAP);
         let headings_height = headings.iter().map(|lines| height_of(lines)).max().unwrap_or(0);
@@ -258,13 +259,13 @@ fn text_block(heading: &str, text: &str, style: TextStyle, width: u32) -> Vec<Li
     with(heading, style).chain(with(text, QUIET)).collect()
 }
 
-/// Breaks text between words so that each line fits; a word that does not fit alone is cut.
+/// Breaks text at spaces, but not at no-break spaces, so that each line fits; a word too long for a line is cut.
 fn broken_into_lines(text: &str, style: TextStyle, width: u32) -> Vec<String> {
     let letters = (width / style.width_of(" ").max(1)).max(1) as usize;
     let mut lines = Vec::new();
     for paragraph in text.lines() {
         let mut line = String::new();
-        for word in paragraph.split_whitespace() {
+        for word in paragraph.split(' ').filter(|word| !word.is_empty()) {
             if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > letters {
                 lines.push(std::mem::take(&mut line));
             }

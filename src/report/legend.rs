@@ -7,7 +7,7 @@ use super::picture::{Area, FAINT, INK, LINE, Picture, TextStyle, WHITE};
 pub const MIN_WIDTH: u32 = 240;
 
 /// Room beside the bar, half a label.
-const SIDE: u32 = 24;
+pub(super) const SIDE: u32 = 24;
 const BAR_HEIGHT: u32 = 14;
 const TICK_HEIGHT: u32 = 5;
 const GAP: u32 = 6;
@@ -18,7 +18,7 @@ const MARGIN: u32 = 16;
 /// Numbers beside the bar, from 0 at its left end to 1 at its right end, and how they are written.
 const UNIT_TICKS: [(f64, &str); 5] = [(0.0, "0"), (0.25, "0.25"), (0.5, "0.5"), (0.75, "0.75"), (1.0, "1")];
 
-/// A legend for numbers from 0 to 1: title, bar, ticks; `width` pixels wide, at least [`MIN_WIDTH`].
+/// A legend for numbers from 0 to 1: title, bar, ticks; `width` pixels wide, or as wide as its text needs.
 #[must_use]
 pub fn legend(map: ColourMap, title: &str, width: u32) -> Picture {
     let ticks = UNIT_TICKS.map(|(place, label)| (place, label.to_owned()));
@@ -39,7 +39,7 @@ pub fn with_legend(picture: &Picture, map: ColourMap, title: &str) -> Picture {
 /// A bar of the colours of 0 to 1 with a title above and ticks (place from 0 to 1, label) below.
 pub(super) fn gradient(colour: impl Fn(f64) -> [u8; 3], ticks: &[(f64, String)], title: &str, width: u32) -> Picture {
     let text = TextStyle::default();
-    let bar = bar_of(width.max(MIN_WIDTH));
+    let bar = bar_of(width.max(MIN_WIDTH).max(text.width_of(title).saturating_add(2 * SIDE)));
     let height = bar.top + bar.height + TICK_HEIGHT + 2 + text.height();
     let mut picture = Picture::filled(bar.width + 2 * SIDE, height, WHITE);
 
@@ -105,6 +105,9 @@ mod tests {
     #[test]
     fn a_narrow_legend_is_widened_and_a_picture_keeps_its_pixels() {
         assert_eq!(legend(ColourMap::Paper, "", 3).width(), MIN_WIDTH);
+        let title = "a title that is wider than the narrowest legend";
+        let title_width = TextStyle::default().width_of(title);
+        assert_eq!(legend(ColourMap::Paper, title, 3).width(), title_width + 2 * SIDE);
         let red = Picture::filled(40, 30, [255, 0, 0]);
         let page = with_legend(&red, ColourMap::Cividis, "visibility");
         assert_eq!(page.width(), MIN_WIDTH + 2 * MARGIN);

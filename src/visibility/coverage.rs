@@ -54,6 +54,12 @@ impl CoverageCounts {
         self.counts[slot(triangle, side)]
     }
 
+    /// Weighted pixels in which the cameras saw anything.
+    #[must_use]
+    pub fn covered(&self) -> u64 {
+        self.covered
+    }
+
     /// The window that all cameras looked through.
     #[must_use]
     pub fn window(&self) -> Window {

@@ -22,6 +22,9 @@ pub(super) fn read<R: Rows>(header: &Header, mut rows: R) -> Result<Soup, Fault>
             _ => each_row(&mut rows, element, |rows, _| skip_row(rows, &element.properties))?,
         }
     }
+    if rows.has_surplus() {
+        soup.dropped.insert(Dropped::OtherProperties);
+    }
     if rows.is_at_end() {
         Ok(soup)
     } else {

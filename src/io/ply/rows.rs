@@ -36,6 +36,11 @@ pub(super) trait Rows {
     /// How many rows of the element fit into the rest of the file at most, however many are promised.
     fn most_rows(&self, element: &Element) -> usize;
 
+    /// Whether a row held more than the header names, which was stepped over.
+    fn has_surplus(&self) -> bool {
+        false
+    }
+
     /// Whether nothing but padding is left.
     fn is_at_end(&self) -> bool;
 
@@ -47,19 +52,28 @@ pub(super) trait Rows {
 }
 
 /// Numbers as words. A row begins in a line of its own and may go on over several.
+///
+/// VCGLIB writes colours of corners as a list that its header gives as single numbers, so the end of a line may hold
+/// more than was promised. A row of several lines may not: there, a number is missing further up.
 #[derive(Debug)]
 pub(super) struct AsciiRows<'a> {
     words: Words<'a>,
     file_bytes: usize,
+    /// Line in which the current row began, once it has.
+    row_line: Option<usize>,
+    has_surplus: bool,
 }
 
 impl<'a> AsciiRows<'a> {
     pub(super) fn new(file: &'a [u8], header: &Header) -> Self {
-        Self { words: Words::new(&file[header.bytes..], header.lines + 1), file_bytes: file.len() }
+        let words = Words::new(&file[header.bytes..], header.lines + 1);
+        Self { words, file_bytes: file.len(), row_line: None, has_surplus: false }
     }
 
     fn word(&mut self) -> Result<&'a [u8], Trouble> {
-        self.words.next().ok_or(Trouble::End)
+        let word = self.words.next().ok_or(Trouble::End)?;
+        self.row_line.get_or_insert(self.words.line());
+        Ok(word)
     }
 }
 
@@ -79,10 +93,18 @@ impl Rows for AsciiRows<'_> {
     }
 
     fn end_row(&mut self) -> Result<(), Trouble> {
-        match self.words.next_in_line() {
-            None => Ok(()),
-            Some(word) => Err(self.fault(format!("{} is one more than the header names for a row", show(word))).into()),
+        let began = self.row_line.take().unwrap_or(self.words.line());
+        let Some(word) = self.words.next_in_line() else { return Ok(()) };
+        if began < self.words.line() {
+            return Err(self.fault(format!("the row that began in line {began} ends before {}", show(word))).into());
         }
+        self.words.rest_of_line();
+        self.has_surplus = true;
+        Ok(())
+    }
+
+    fn has_surplus(&self) -> bool {
+        self.has_surplus
     }
 
     fn most_rows(&self, element: &Element) -> usize {

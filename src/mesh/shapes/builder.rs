@@ -55,7 +55,8 @@ impl Builder {
 
     /// Adds `n` × `m` quads between four corners, counter-clockwise from outside; `n` counts along the first edge.
     pub(super) fn patch(&mut self, [a, b, c, d]: [DVec3; 4], [n, m]: [usize; 2]) {
-        // Each side is interpolated from its own two ends alone, so that neighbours with the same corners share vertices.
+        // Each side is interpolated from its own two ends alone, so that neighbours with the same corners share
+        // vertices.
         let at = |i: usize, j: usize| between(between(a, b, i, n), between(d, c, i, n), j, m);
         for j in 0..m {
             for i in 0..n {

@@ -11,7 +11,8 @@ use super::round::{latitude_below_pole, meridian};
 use super::{Tagged, icosphere, merged, transformed, turned_over, uv_sphere};
 use crate::mesh::TriMesh;
 
-/// Box with edges of length 1 and an open top, as a sheet that faces inward: "bottom" and "walls", `n` × `n` cells a side.
+/// Box with edges of length 1 and an open top, as a sheet that faces inward: "bottom" and "walls", `n` × `n` cells a
+/// side.
 #[must_use]
 pub fn open_box(n: usize) -> Tagged {
     let (bottom, walls) = open_box_inside(n.max(1));
@@ -69,7 +70,8 @@ pub fn spherical_bowl(fraction: f64, [segments, rings]: [usize; 2]) -> Tagged {
     sphere_open_above(rim, [segments, rings])
 }
 
-/// Unit sphere shell with a circular hole of half-angle `half_angle_rad` round +z, as a sheet that faces inward: "inside".
+/// Unit sphere shell with a circular hole of half-angle `half_angle_rad` round +z, as a sheet that faces inward:
+/// "inside".
 #[must_use]
 pub fn shell_with_hole(half_angle_rad: f64, [segments, rings]: [usize; 2]) -> Tagged {
     sphere_open_above(latitude_below_pole(half_angle_rad), [segments, rings])
@@ -83,7 +85,8 @@ fn sphere_open_above(rim_latitude_rad: f64, [segments, rings]: [usize; 2]) -> Ta
     Tagged::of(&[("inside", inside)], regular_polygon_area(rim_radius, segments))
 }
 
-/// [`shell_with_hole`] round a concentric ball (a closed solid of `ball_radius` < cos `half_angle_rad`): "inside", "ball".
+/// [`shell_with_hole`] round a concentric ball (a closed solid of `ball_radius` < cos `half_angle_rad`): "inside",
+/// "ball".
 #[must_use]
 pub fn shell_with_hole_and_ball(half_angle_rad: f64, ball_radius: f64, [segments, rings]: [usize; 2]) -> Tagged {
     let shell = shell_with_hole(half_angle_rad, [segments, rings]);
@@ -91,7 +94,8 @@ pub fn shell_with_hole_and_ball(half_angle_rad: f64, ball_radius: f64, [segments
     Tagged::of(&[("inside", shell.mesh), ("ball", ball)], shell.opening_area)
 }
 
-/// Cylindrical well of radius 1 and the given depth, open above at z = 0, as a sheet that faces inward: "bottom", "walls".
+/// Cylindrical well of radius 1 and the given depth, open above at z = 0, as a sheet that faces inward: "bottom",
+/// "walls".
 /// The bottom has `rings` rings, and the wall as many belts.
 #[must_use]
 pub fn cylindrical_well(depth: f64, [segments, rings]: [usize; 2]) -> Tagged {

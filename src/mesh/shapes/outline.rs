@@ -74,7 +74,8 @@ impl BeltOutline {
         Self { corners, straights }
     }
 
-    /// The outline `distance` outside the belt (negative: inside); corner i belongs to corner i of every other distance.
+    /// The outline `distance` outside the belt (negative: inside); corner i belongs to corner i of every other
+    /// distance.
     pub(super) fn offset(&self, distance: f64) -> Vec<DVec2> {
         self.corners.iter().map(|&(centre, radius, normal)| centre + normal * (radius + distance)).collect()
     }

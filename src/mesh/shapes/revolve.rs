@@ -7,7 +7,8 @@ use crate::mesh::TriMesh;
 
 /// Turns a polyline of (radius, height) points about the z axis, in `segments` steps.
 ///
-/// The front side lies to the right of the polyline's direction, so a section that rises faces away from the axis, and a
+/// The front side lies to the right of the polyline's direction, so a section that rises faces away from the axis,
+/// and a
 /// closed counter-clockwise section gives an outward solid.
 pub(super) fn revolve(section: &[DVec2], segments: usize) -> TriMesh {
     let mut builder = Builder::default();

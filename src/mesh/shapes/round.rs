@@ -79,7 +79,8 @@ pub fn ellipsoid(half_axes: DVec3, segments: usize, rings: usize) -> TriMesh {
         .expect("half axes are finite lengths of a test piece")
 }
 
-/// Torus about the z axis: tube of radius `tube` round a circle of radius `ring`, `segments` × `sides` quads (≥ 3 each).
+/// Torus about the z axis: tube of radius `tube` round a circle of radius `ring`, `segments` × `sides` quads (≥ 3
+/// each).
 #[must_use]
 pub fn torus(ring: f64, tube: f64, segments: usize, sides: usize) -> TriMesh {
     let sides = sides.max(3);

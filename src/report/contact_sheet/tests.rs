@@ -88,15 +88,15 @@ fn the_margin_stays_white() {
 
 #[test]
 fn lines_break_between_words_and_long_words_are_cut() {
-    let lines = broken_into_lines("one two three\nfour incomprehensibilities", TEXT, 8 * 9);
-    assert_eq!(lines, ["one two", "three", "four", "incompreh"]);
-    assert!(broken_into_lines("", TEXT, 80).is_empty());
+    let lines = broken_into_lines("one two three\nfour incomprehensibilities\ni\u{a0}am here", QUIET, 8 * 9);
+    assert_eq!(lines, ["one two", "three", "four", "incompreh", "i\u{a0}am here"]);
+    assert!(broken_into_lines("", QUIET, 80).is_empty());
 }
 
 #[test]
 fn captions_have_thousands_separators_and_one_decimal() {
     assert_eq!(mesh_caption(110_338, None), "110,338 triangles");
-    assert_eq!(mesh_caption(5517, Some(11.94)), "5,517 triangles · image RMSE 11.9");
+    assert_eq!(mesh_caption(5517, Some(11.94)), "5,517 triangles · image\u{a0}RMSE\u{a0}11.9");
 }
 
 #[test]
