@@ -1,3 +1,9 @@
-//! The `outsight` program.
+//! The `outsight` program: the library with flags, progress bars and exit codes.
 
-fn main() {}
+mod cli;
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    cli::main()
+}

@@ -1,0 +1,74 @@
+//! Estimates of memory and time, made before the work.
+
+/// What a run does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Task {
+    /// Only reads.
+    Read,
+    /// Measures visibility with images of this many pixels along the side.
+    Measure {
+        /// Pixels along the side; 0 where not known before reading.
+        resolution: u32,
+    },
+    /// Measures and simplifies.
+    Simplify {
+        /// Pixels along the side; 0 where not known before reading.
+        resolution: u32,
+    },
+    /// Draws and compares meshes.
+    Compare,
+}
+
+/// The program itself, its threads and their stacks.
+const FLOOR_BYTES: u64 = 24 << 20;
+/// A triangle and the half vertex that it brings, as read: indices, position, and the file's bytes beside them.
+const READ_BYTES: u64 = 64;
+/// A triangle while it is looked at: its `f32` copy, its two counts, its visibility.
+const MEASURE_BYTES: u64 = 120;
+/// A triangle while it is simplified: quadrics, heap and rings of its share of vertices and edges.
+const SIMPLIFY_BYTES: u64 = 250;
+/// A triangle while it is compared: the search tree and the samples.
+const COMPARE_BYTES: u64 = 200;
+/// A pixel of the two item buffers of an axis: near and far, triangle and depth each.
+const PIXEL_BYTES: u64 = 16;
+
+/// Memory that `task` needs on a mesh of that many triangles, in bytes. Rough: within a factor of two.
+pub fn memory_bytes(task: Task, triangles: usize) -> u64 {
+    let triangles = triangles as u64;
+    let images = |resolution: u32| {
+        let side = u64::from(if resolution == 0 { chosen_resolution(triangles) } else { resolution });
+        PIXEL_BYTES * side * side * rayon::current_num_threads() as u64
+    };
+    let working = match task {
+        Task::Read => 0,
+        Task::Measure { resolution } => MEASURE_BYTES * triangles + images(resolution),
+        Task::Simplify { resolution } => SIMPLIFY_BYTES.max(MEASURE_BYTES) * triangles + images(resolution),
+        Task::Compare => COMPARE_BYTES * triangles,
+    };
+    FLOOR_BYTES + READ_BYTES * triangles + working
+}
+
+/// Resolution that measuring chooses by itself: 480·√(T/250,000), within 480 and 4096.
+fn chosen_resolution(triangles: u64) -> u32 {
+    let wanted = 480.0 * (triangles as f64 / 250_000.0).sqrt();
+    wanted.clamp(480.0, 4096.0) as u32
+}
+
+/// Seconds of one thread per triangle and camera axis, measured on scans of 0.1 to 1 million triangles.
+const SECONDS_PER_TRIANGLE_AXIS: f64 = 4e-8;
+/// Seconds of one thread per pixel and camera axis: clearing and counting.
+const SECONDS_PER_PIXEL_AXIS: f64 = 1.5e-8;
+/// Triangles that one thread takes away in a second.
+const COLLAPSED_TRIANGLES_PER_SECOND: f64 = 250_000.0;
+
+/// Seconds to measure a mesh of that many triangles from `cameras` cameras, on the threads of this run. Rough.
+pub fn measure_seconds(triangles: usize, cameras: usize) -> f64 {
+    let side = f64::from(chosen_resolution(triangles as u64));
+    let axis = SECONDS_PER_TRIANGLE_AXIS * triangles as f64 + SECONDS_PER_PIXEL_AXIS * side * side;
+    axis * cameras as f64 / 2.0 / rayon::current_num_threads() as f64
+}
+
+/// Seconds to simplify a mesh of that many triangles to a small share of them, once it is measured. Rough.
+pub fn simplify_seconds(triangles: usize) -> f64 {
+    triangles as f64 / COLLAPSED_TRIANGLES_PER_SECOND
+}

@@ -1,0 +1,227 @@
+//! Flags that several commands share. A flag means the same in every command.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Args, ValueEnum};
+
+use outsight::backend::BackendKind;
+use outsight::camera::CameraWeights;
+use outsight::error::{Error, Result};
+use outsight::io::{Format, ReadOptions};
+use outsight::report::colour::ColourMap;
+use outsight::visibility::{Estimator, Sides};
+
+use super::progress::Show;
+use super::values;
+
+/// Flags of every command.
+#[derive(Debug, Clone, Default, Args)]
+#[command(next_help_heading = "Everywhere")]
+pub struct GlobalFlags {
+    /// Print one JSON object instead of text
+    #[arg(long, global = true)]
+    pub json: bool,
+    /// Replace outputs that are there already
+    #[arg(long, global = true)]
+    pub force: bool,
+    /// Treat warnings as errors
+    #[arg(long, global = true)]
+    pub strict: bool,
+    /// Say nothing but errors, and what --json or - asks for
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Say more
+    #[arg(short, long, global = true)]
+    pub verbose: bool,
+    /// Show progress on a terminal only, always, or never
+    #[arg(long, global = true, value_name = "WHEN", default_value = "auto")]
+    pub progress: Show,
+    /// Threads to use; any number gives the same result [default: all]
+    #[arg(long, global = true, value_name = "N")]
+    pub threads: Option<NonZeroUsize>,
+    /// Refuse work that needs more memory than this, as in 2G or 500M
+    #[arg(long, global = true, value_name = "SIZE", value_parser = values::bytes)]
+    pub memory_limit: Option<u64>,
+    /// Give up after this many seconds, and write nothing
+    #[arg(long, global = true, value_name = "SECONDS", value_parser = values::seconds)]
+    pub time_limit: Option<Duration>,
+    /// Seed of everything random
+    #[arg(long, global = true, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+}
+
+impl GlobalFlags {
+    /// Starts the threads that all parallel work shares.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] if the system refuses to.
+    pub fn start_threads(&self) -> Result<()> {
+        let Some(threads) = self.threads else { return Ok(()) };
+        rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global().map_err(|e| Error::Limit {
+            message: format!("--threads {threads}: the system does not start that many ({e}); ask for fewer"),
+        })
+    }
+}
+
+/// The mesh a command reads.
+#[derive(Debug, Clone, Args)]
+pub struct InputFlags {
+    /// Mesh file: PLY, OBJ, STL or OFF, also with .zst or .gz behind; - is standard input
+    #[arg(value_name = "MESH")]
+    pub mesh: PathBuf,
+    #[command(flatten)]
+    pub reading: ReadingFlags,
+}
+
+/// How meshes are read.
+#[derive(Debug, Clone, Args)]
+pub struct ReadingFlags {
+    /// Format of the input, where its name does not say it
+    #[arg(long, value_name = "FORMAT")]
+    input_format: Option<FormatName>,
+    /// Merge vertices at exactly equal positions
+    #[arg(long)]
+    weld: bool,
+}
+
+impl ReadingFlags {
+    /// The library's options for these flags.
+    pub fn options(&self, global: &GlobalFlags) -> ReadOptions {
+        ReadOptions { format: self.input_format.map(Format::from), weld: self.weld, memory_limit: global.memory_limit }
+    }
+}
+
+/// What is up in pictures.
+#[derive(Debug, Clone, Args)]
+pub struct UpFlags {
+    /// Direction that points up in pictures
+    #[arg(long, value_name = "X,Y,Z", default_value = "0,0,1", allow_hyphen_values = true)]
+    #[arg(value_parser = values::direction)]
+    pub up: [f64; 3],
+}
+
+/// How visibility is measured.
+#[derive(Debug, Clone, Default, Args)]
+#[command(next_help_heading = "Looking")]
+pub struct LookingFlags {
+    /// Defaults for the best results, or near the text of Zhang & Turk 2002
+    #[arg(long, value_name = "NAME", default_value = "best")]
+    pub preset: Preset,
+    /// Cameras around the mesh: 6, 18, 66, 258, 1026, 4098 [default: 258]
+    #[arg(long, value_name = "N", value_parser = values::cameras)]
+    pub cameras: Option<usize>,
+    /// Cameras count by the solid angle they own, or alike [best: area, paper: equal]
+    #[arg(long, value_name = "HOW")]
+    pub camera_weights: Option<CameraWeightsName>,
+    /// Pixels along each image's side, 16 to 16384 [best: by triangles, paper: 480]
+    #[arg(long, value_name = "W", value_parser = clap::value_parser!(u32).range(16..=16384))]
+    pub resolution: Option<u32>,
+    /// The machine that looks [default: auto, which is raster]
+    #[arg(long, value_name = "NAME")]
+    pub backend: Option<BackendName>,
+    /// What is counted [default: coverage]
+    #[arg(long, value_name = "NAME")]
+    pub estimator: Option<EstimatorName>,
+    /// Visibility of a triangle's front, better side, or both added [best: better, paper: one]
+    #[arg(long, value_name = "WHICH")]
+    pub sides: Option<SidesName>,
+}
+
+/// A set of defaults.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub enum Preset {
+    // The best results.
+    #[default]
+    Best,
+    // Nearest to the text of Zhang & Turk 2002.
+    Paper,
+}
+
+/// Declares an enum of flag values, each standing for a value of the library.
+macro_rules! names {
+    ($(#[$meta:meta])* $name:ident => $target:ty { $($(#[$doc:meta])* $variant:ident => $value:expr),+ $(,)? }) => {
+        $(#[$meta])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+        pub enum $name { $($(#[$doc])* $variant),+ }
+
+        impl From<$name> for $target {
+            fn from(name: $name) -> Self {
+                match name { $($name::$variant => $value),+ }
+            }
+        }
+    };
+}
+
+pub(super) use names;
+
+names! {
+    /// A mesh format on the command line.
+    FormatName => Format { Ply => Format::Ply, Obj => Format::Obj, Stl => Format::Stl, Off => Format::Off }
+}
+
+names! {
+    /// `--camera-weights`.
+    CameraWeightsName => CameraWeights {
+        // By the solid angle it owns
+        Area => CameraWeights::Area,
+        // All alike
+        Equal => CameraWeights::Equal,
+    }
+}
+
+names! {
+    /// `--backend`.
+    BackendName => BackendKind {
+        // Always raster, so that the same input gives the same bytes everywhere
+        Auto => BackendKind::Raster,
+        // CPU rasteriser, always there
+        Raster => BackendKind::Raster,
+        // Ray casting with Embree, not there yet
+        #[value(hide = true)]
+        Embree => BackendKind::Embree,
+        // GPU rasteriser, not there yet
+        #[value(hide = true)]
+        Gpu => BackendKind::Gpu,
+    }
+}
+
+names! {
+    /// `--estimator`.
+    EstimatorName => Estimator {
+        // Weighted pixels: unbiased at any triangle size
+        Coverage => Estimator::Coverage,
+        // The paper's: a camera sees a triangle or not, not there yet
+        #[value(hide = true)]
+        ItemBuffer => Estimator::ItemBuffer,
+        // Rays from the triangle to the cameras, not there yet
+        #[value(hide = true)]
+        Surface => Estimator::Surface,
+        // Cosine-distributed rays, not there yet
+        #[value(hide = true)]
+        Hemisphere => Estimator::Hemisphere,
+    }
+}
+
+names! {
+    /// `--sides`.
+    SidesName => Sides {
+        // The front
+        One => Sides::One,
+        // The better one
+        Better => Sides::Better,
+        // Both added
+        Sum => Sides::Sum,
+    }
+}
+
+names! {
+    /// `--colour-map`.
+    ColourMapName => ColourMap {
+        // White, red, yellow, green, as in the paper
+        Paper => ColourMap::Paper,
+        // Dark blue to yellow, readable for every eye
+        Cividis => ColourMap::Cividis,
+    }
+}

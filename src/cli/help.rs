@@ -1,0 +1,90 @@
+//! Examples behind the help texts.
+
+/// Behind `outsight --help`.
+pub const OUTSIGHT: &str = "\
+Start with:
+  outsight demo                         the whole story in 20 seconds, in ./outsight-demo/
+  outsight simplify part.ply -o small.ply -r 0.05
+  outsight compare part.ply small.ply -o differences.png
+
+Exit codes: 0 done, 1 the answer is no, 2 wrong use, 3 bad input, 4 output not written,
+5 limit reached, 6 not available here, 70 a bug in Outsight, 130 and 143 interrupted.";
+
+/// Behind `outsight demo --help`.
+pub const DEMO: &str = "\
+Measures the bundled gearbox, simplifies it to 5 % without and with visibility, compares both
+with the original, and writes meshes, pictures and demo.json. Replaces its files of earlier runs.
+
+Example:
+  outsight demo";
+
+/// Behind `outsight info --help`.
+pub const INFO: &str = "\
+Examples:
+  outsight info bunny.ply
+  outsight info --json scan.stl.gz | jq .topology.closed
+  curl -s https://example.org/part.obj | outsight info -";
+
+/// Behind `outsight measure --help`.
+pub const MEASURE: &str = "\
+Examples:
+  outsight measure part.ply                   visibility of the mesh, in a few lines
+  outsight measure part.ply -o heat.ply       triangles coloured, with the property visibility
+  outsight measure part.ply -o v.npy --json   one number per triangle for NumPy, and a summary
+  outsight measure part.ply --preset paper    as Zhang & Turk 2002 did";
+
+/// What clap would write over two lines.
+pub const SIMPLIFY_USAGE: &str =
+    "outsight simplify [OPTIONS] <MESH> -o <FILE> <-t <N>|-r <RATIO>|-e <ERROR>|--lods <LIST>>";
+
+/// Behind `outsight simplify --help`.
+pub const SIMPLIFY: &str = "\
+Of several sizes and errors the first one reached stops. With --lods, level N is written to FILE
+with -lodN before its ending, or to FILE with N in place of {}. Triangles that no camera sees are
+deleted, and counted in a warning; --hidden keep keeps them.
+
+Examples:
+  outsight simplify part.ply -o small.ply -r 0.05            keep 5 % of the triangles
+  outsight simplify part.obj -o small.stl -t 20000 -e 0.1    20,000 triangles, or error 0.1
+  outsight simplify part.ply -o lod/{}.ply --lods 0.5,0.25,0.1
+  outsight simplify part.ply -o qb.ply -r 0.05 --metric quadric
+  outsight simplify - -o - --output-format ply -r 0.1 < in.stl > out.ply";
+
+/// Behind `outsight compare --help`.
+pub const COMPARE: &str = "\
+Examples:
+  outsight compare part.ply small.ply
+  outsight compare part.ply qb.ply vg.ply -o differences.png
+  outsight compare part.ply small.ply --json | jq '.tests[0].image_rmse'";
+
+/// Behind `outsight render --help`.
+pub const RENDER: &str = "\
+Examples:
+  outsight render part.ply -o part.png --camera 1,1,0.5
+  outsight render part.ply -o heat.png --style heat --colour-map cividis";
+
+/// Behind `outsight convert --help`.
+pub const CONVERT: &str = "\
+Examples:
+  outsight convert scan.stl scan.ply.zst
+  outsight convert part.obj part.off --weld
+  outsight convert - out.ply --input-format stl < in.stl";
+
+/// Behind `outsight doctor --help`.
+pub const DOCTOR: &str = "\
+Ends with code 1 if the self-check fails.
+
+Example:
+  outsight doctor --json | jq .backends";
+
+/// Behind `outsight completions --help`.
+pub const COMPLETIONS: &str = "\
+Examples:
+  outsight completions bash > ~/.local/share/bash-completion/completions/outsight
+  outsight completions zsh > ~/.zfunc/_outsight";
+
+/// Behind `outsight man --help`.
+pub const MAN: &str = "\
+Examples:
+  outsight man | man -l -
+  outsight man --dir ~/.local/share/man/man1";

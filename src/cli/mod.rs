@@ -1,0 +1,136 @@
+//! The command line: parse flags, fill options, call the library, print.
+//!
+//! One file a command. This is the only place that prints, reads flags or decides how the program ends; `console` does
+//! the first, `flags` and `presets` the second, `failure` the third.
+
+mod bundled;
+mod collapsing;
+mod compare;
+mod completions;
+mod console;
+mod convert;
+mod demo;
+mod doctor;
+mod estimate;
+mod failure;
+mod flags;
+mod help;
+mod in_force;
+mod info;
+mod man;
+mod measure;
+mod outputs;
+mod presets;
+mod progress;
+mod render;
+mod signals;
+mod simplify;
+mod system;
+mod text;
+mod values;
+mod watch;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use console::Console;
+use failure::{Failure, guarded};
+use flags::GlobalFlags;
+
+/// Measures how well each triangle of a mesh can be seen from outside, and simplifies it where nobody looks.
+#[derive(Debug, Parser)]
+#[command(name = "outsight", version, propagate_version = false, after_help = help::OUTSIGHT, max_term_width = 100)]
+#[command(subcommand_required = true, arg_required_else_help = true, disable_help_subcommand = true)]
+pub struct Arguments {
+    #[command(flatten)]
+    global: GlobalFlags,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Show the whole story on a bundled model, in ./outsight-demo/
+    #[command(after_help = help::DEMO)]
+    Demo(demo::Flags),
+    /// Say what a mesh file holds, and what measuring it would cost
+    #[command(after_help = help::INFO)]
+    Info(info::Flags),
+    /// Measure how well each triangle is seen from outside
+    #[command(after_help = help::MEASURE)]
+    Measure(measure::Flags),
+    /// Reduce the triangles of a mesh, first where nobody looks
+    #[command(after_help = help::SIMPLIFY, override_usage = help::SIMPLIFY_USAGE)]
+    Simplify(simplify::Flags),
+    /// Say how far meshes differ from a reference, in pictures and in space
+    #[command(after_help = help::COMPARE)]
+    Compare(compare::Flags),
+    /// Draw a mesh, shaded or coloured by visibility
+    #[command(after_help = help::RENDER)]
+    Render(render::Flags),
+    /// Write a mesh in another format
+    #[command(after_help = help::CONVERT)]
+    Convert(convert::Flags),
+    /// Say what works on this machine, and why the rest does not
+    #[command(after_help = help::DOCTOR)]
+    Doctor(doctor::Flags),
+    /// Print the completion script of a shell
+    #[command(after_help = help::COMPLETIONS)]
+    Completions(completions::Flags),
+    /// Print the manual page
+    #[command(after_help = help::MAN)]
+    Man(man::Flags),
+}
+
+/// Runs the program on the process's arguments and says how it ends.
+pub fn main() -> ExitCode {
+    failure::report_bugs();
+    match Arguments::try_parse() {
+        Ok(arguments) => ExitCode::from(run(&arguments)),
+        // Help and version come as "errors" that belong on stdout with code 0; a closed pipe there is nobody's fault.
+        Err(asked_or_wrong) => {
+            let _ = asked_or_wrong.print();
+            ExitCode::from(u8::try_from(asked_or_wrong.exit_code()).unwrap_or(2))
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> u8 {
+    let console = Console::new(&arguments.global);
+    let outcome = guarded(|| {
+        console.watch_signals()?;
+        arguments.global.start_threads()?;
+        dispatch(&arguments.command, &console)
+    });
+    console.finish_bars();
+    match outcome {
+        Ok(()) => 0,
+        Err(failure) => failure::conclude(&failure, &console),
+    }
+}
+
+fn dispatch(command: &Command, console: &Console) -> Result<(), Failure> {
+    match command {
+        Command::Demo(flags) => demo::run(flags, console),
+        Command::Info(flags) => info::run(flags, console),
+        Command::Measure(flags) => measure::run(flags, console),
+        Command::Simplify(flags) => simplify::run(flags, console),
+        Command::Compare(flags) => compare::run(flags, console),
+        Command::Render(flags) => render::run(flags, console),
+        Command::Convert(flags) => convert::run(flags, console),
+        Command::Doctor(flags) => doctor::run(flags, console),
+        Command::Completions(flags) => completions::run(flags, console),
+        Command::Man(flags) => man::run(flags, console),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    #[test]
+    fn flags_of_all_commands_agree_with_each_other() {
+        super::Arguments::command().debug_assert();
+    }
+}

@@ -1,0 +1,106 @@
+//! Turns flags into the library's options: the preset gives the defaults, an explicit flag overrides it.
+
+use outsight::error::{Error, Result};
+use outsight::pipeline::Metric;
+use outsight::simplify::{PlaneWeight, SimplifyOptions, Topology};
+use outsight::visibility::{Hidden, MeasureOptions};
+
+use super::collapsing::{CollapseFlags, MetricName, RefitName};
+use super::console::Console;
+use super::flags::{GlobalFlags, LookingFlags, Preset};
+
+/// p in V^p: both presets square, as the paper does.
+pub const VISIBILITY_POWER: f64 = 2.0;
+
+/// How visibility is measured under these flags.
+///
+/// # Errors
+/// [`Error::Unavailable`] for a backend or an estimator that this version does not have.
+pub fn measure_options(flags: &LookingFlags, global: &GlobalFlags) -> Result<MeasureOptions> {
+    let preset = match flags.preset {
+        Preset::Best => MeasureOptions::default(),
+        Preset::Paper => MeasureOptions::paper(),
+    };
+    let options = MeasureOptions {
+        cameras: flags.cameras.unwrap_or(preset.cameras),
+        camera_weights: flags.camera_weights.map_or(preset.camera_weights, Into::into),
+        resolution: flags.resolution.or(preset.resolution),
+        backend: flags.backend.map_or(preset.backend, Into::into),
+        estimator: flags.estimator.map_or(preset.estimator, Into::into),
+        sides: flags.sides.map_or(preset.sides, Into::into),
+        memory_limit: global.memory_limit,
+    };
+    options.check()?;
+    Ok(options)
+}
+
+/// Says where the preset `paper` cannot be followed yet, for commands that measure.
+pub fn announce_stand_ins(flags: &LookingFlags, console: &Console) {
+    if flags.preset == Preset::Paper && flags.estimator.is_none() {
+        console.announce(
+            "--preset paper: the estimator item-buffer is not in this version, coverage stands in; --estimator coverage \
+             silences this",
+        );
+    }
+}
+
+/// What orders the collapses under these flags.
+///
+/// # Errors
+/// [`Error::Unavailable`] for a metric that this version does not have.
+pub fn metric(flags: &CollapseFlags) -> Result<Metric> {
+    let name = match flags.metric {
+        MetricName::Visibility => return Ok(Metric::Visibility),
+        MetricName::Quadric => return Ok(Metric::Quadric),
+        MetricName::Orientation => "orientation",
+        MetricName::Silhouette => "silhouette",
+    };
+    let message = format!("metric {name} is not in this version of Outsight; use --metric visibility or quadric");
+    Err(Error::Unavailable { message })
+}
+
+/// What happens to hidden triangles.
+///
+/// # Errors
+/// [`Error::Option`] for anything but `keep` under a metric that does not look: nothing would be known to be hidden.
+pub fn hidden(flags: &CollapseFlags, preset: Preset, metric: Metric) -> Result<Hidden> {
+    let asked = flags.hidden.map(Hidden::from);
+    match (metric, asked, preset) {
+        (Metric::Quadric, None | Some(Hidden::Keep), _) => Ok(Hidden::Keep),
+        (Metric::Quadric, Some(_), _) => Err(Error::Option {
+            name: "--hidden",
+            message: "--metric quadric does not look, so nothing is known to be hidden; use --metric visibility, with \
+                      --visibility-power 0 for quadric error on what can be seen"
+                .to_owned(),
+        }),
+        (Metric::Visibility, Some(asked), _) => Ok(asked),
+        (Metric::Visibility, None, Preset::Best) => Ok(Hidden::Delete),
+        (Metric::Visibility, None, Preset::Paper) => Ok(Hidden::Collapse),
+    }
+}
+
+/// p in V^p under these flags.
+pub fn visibility_power(flags: &CollapseFlags) -> f64 {
+    flags.visibility_power.unwrap_or(VISIBILITY_POWER)
+}
+
+/// The collapser's options under these flags, without targets and error bound.
+///
+/// # Errors
+/// [`Error::Unavailable`] for `--refit guarded`.
+pub fn simplify_options(flags: &CollapseFlags, preset: Preset) -> Result<SimplifyOptions> {
+    if flags.refit == RefitName::Guarded {
+        let message = "--refit guarded is not in this version of Outsight; leave it out or use --refit none".to_owned();
+        return Err(Error::Unavailable { message });
+    }
+    let base = match preset {
+        Preset::Best => SimplifyOptions::default(),
+        Preset::Paper => SimplifyOptions::paper(),
+    };
+    Ok(SimplifyOptions {
+        plane_weight: flags.weights_by.map_or(base.plane_weight, PlaneWeight::from),
+        topology: flags.topology.map_or(base.topology, Topology::from),
+        boundary: flags.boundary.unwrap_or(base.boundary),
+        ..base
+    })
+}

@@ -1,0 +1,158 @@
+//! `outsight simplify`: fewer triangles, taken first where nobody looks.
+
+use std::path::{Path, PathBuf};
+
+use clap::{ArgGroup, Args};
+use outsight::Error;
+use outsight::pipeline::{LevelRequest, Metric, SimplifyReport, SimplifyRequest, run_simplify};
+use outsight::simplify::{SimplifyOptions, Target};
+use serde::Serialize;
+use serde_json::Value;
+
+use super::collapsing::CollapseFlags;
+use super::console::Console;
+use super::estimate::Task;
+use super::failure::Failure;
+use super::flags::{FormatName, InputFlags, LookingFlags};
+use super::in_force;
+use super::outputs::{self, Kind, Planned, is_pipe};
+use super::presets;
+use super::system::peak_mib;
+use super::text::{count, duration, significant, table};
+use super::values::{self, LevelSize};
+use super::watch::{Found, Watch};
+
+#[derive(Debug, Args)]
+#[command(group = ArgGroup::new("size").required(true).multiple(true))]
+pub struct Flags {
+    #[command(flatten)]
+    input: InputFlags,
+    /// Result: .ply, .obj, .stl or .off, also with .zst or .gz; - is standard output
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// Format of the output, where its name does not say it
+    #[arg(long, value_name = "FORMAT")]
+    output_format: Option<FormatName>,
+    /// Stop at this many triangles
+    #[arg(short, long, value_name = "N", value_parser = values::triangles, group = "size")]
+    triangles: Option<usize>,
+    /// Stop at this share of the triangles, in (0, 1]
+    #[arg(short, long, value_name = "RATIO", value_parser = values::ratio, group = "size")]
+    ratio: Option<f64>,
+    /// Stop before this root mean square distance, in model units
+    #[arg(short = 'e', long, value_name = "ERROR", value_parser = values::length, group = "size")]
+    max_error: Option<f64>,
+    /// Several results in one run, from large to small, as in 0.5,0.25,5000
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = values::level_size, group = "size")]
+    #[arg(conflicts_with_all = ["triangles", "ratio"])]
+    lods: Vec<LevelSize>,
+    #[command(flatten)]
+    collapse: CollapseFlags,
+    #[command(flatten)]
+    looking: LookingFlags,
+}
+
+/// The library's report with what only the program knows.
+#[derive(Debug, Serialize)]
+struct Object<'a> {
+    #[serde(flatten)]
+    report: &'a SimplifyReport,
+    peak_mb: Option<f64>,
+    #[serde(flatten)]
+    found: Found,
+    options: Value,
+}
+
+/// Reads, looks, simplifies, writes, prints.
+pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
+    let request = request(flags, console)?;
+    check_outputs(&request, console.global.json)?;
+    if request.metric == Metric::Visibility {
+        presets::announce_stand_ins(&flags.looking, console);
+    }
+    let task = Task::Simplify { resolution: request.measure.resolution.unwrap_or(0) };
+    let watch = Watch::new(console, task).writing_mesh(true).deleting_knowingly(flags.collapse.hidden.is_some());
+    let report = run_simplify(&request, &watch)?;
+    let object =
+        Object { report: &report, peak_mb: peak_mib(), found: watch.found(), options: in_force::simplify(&request) };
+    let to_stdout = !request.levels.iter().any(|level| is_pipe(&level.output));
+    console.result(&object, &text(&report), to_stdout)
+}
+
+fn request(flags: &Flags, console: &Console) -> outsight::Result<SimplifyRequest> {
+    let preset = flags.looking.preset;
+    let metric = presets::metric(&flags.collapse)?;
+    Ok(SimplifyRequest {
+        input: flags.input.mesh.clone(),
+        read: flags.input.reading.options(&console.global),
+        metric,
+        measure: presets::measure_options(&flags.looking, &console.global)?,
+        hidden: presets::hidden(&flags.collapse, preset, metric)?,
+        visibility_power: presets::visibility_power(&flags.collapse),
+        simplify: SimplifyOptions { max_error: flags.max_error, ..presets::simplify_options(&flags.collapse, preset)? },
+        levels: levels(flags),
+        format: flags.output_format.map(Into::into),
+        force: console.global.force,
+    })
+}
+
+fn levels(flags: &Flags) -> Vec<LevelRequest> {
+    if flags.lods.is_empty() {
+        let count = flags.triangles.map(Target::Triangles);
+        let targets = count.into_iter().chain(flags.ratio.map(Target::Ratio)).collect();
+        return vec![LevelRequest { targets, output: flags.output.clone() }];
+    }
+    let level = |(number, size): (usize, &LevelSize)| {
+        let target = match *size {
+            LevelSize::Ratio(ratio) => Target::Ratio(ratio),
+            LevelSize::Triangles(count) => Target::Triangles(count),
+        };
+        LevelRequest { targets: vec![target], output: outputs::level_path(&flags.output, number) }
+    };
+    flags.lods.iter().enumerate().map(level).collect()
+}
+
+fn check_outputs(request: &SimplifyRequest, json: bool) -> outsight::Result<()> {
+    for level in &request.levels {
+        let path: &Path = &level.output;
+        if is_pipe(path) && json {
+            let message = "standard output cannot hold both a mesh and --json; name a file".to_owned();
+            return Err(Error::Option { name: "--output", message });
+        }
+        outputs::check(Planned { path, kind: Kind::Mesh, format: request.format }, &[&request.input], request.force)?;
+    }
+    Ok(())
+}
+
+fn text(report: &SimplifyReport) -> String {
+    let row = |level: &outsight::pipeline::LevelReport| {
+        vec![
+            level.file.display().to_string(),
+            count(level.output),
+            format!("{:.2} %", 100.0 * level.output as f64 / report.triangles as f64),
+            significant(level.error),
+            stop_in_words(level.stop).to_owned(),
+        ]
+    };
+    let rows: Vec<Vec<String>> = report.levels.iter().map(row).collect();
+    let seconds = &report.seconds;
+    format!(
+        "{}{} triangles in, metric {}, {} ({} looking, {} simplifying)\n",
+        table(&["file", "triangles", "kept", "error", "stopped by"], &rows),
+        count(report.triangles),
+        report.metric,
+        duration(seconds.total),
+        duration(seconds.visibility),
+        duration(seconds.simplify),
+    )
+}
+
+/// What a `stop` of the report means to its reader.
+fn stop_in_words(stop: &str) -> &str {
+    match stop {
+        "target" => "target reached",
+        "error" => "error bound",
+        "queue_empty" => "no collapse left",
+        other => other,
+    }
+}

@@ -1,0 +1,95 @@
+//! Numbers and tables as people read them.
+
+/// Bytes in a MiB.
+const MIB: f64 = 1024.0 * 1024.0;
+
+/// A count with its thousands set apart: `871,414`.
+pub fn count(number: usize) -> String {
+    let digits = number.to_string();
+    let mut text = String::with_capacity(digits.len() + digits.len() / 3);
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// Bytes in MiB or GiB.
+pub fn megabytes(bytes: u64) -> String {
+    let mib = bytes as f64 / MIB;
+    if mib >= 1024.0 { format!("{:.1} GiB", mib / 1024.0) } else { format!("{mib:.0} MiB") }
+}
+
+/// Seconds with as many digits as anyone wants to know.
+pub fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 0.1 => format!("{s:.3} s"),
+        s if s < 10.0 => format!("{s:.2} s"),
+        s if s < 120.0 => format!("{s:.0} s"),
+        s => format!("{:.0} min", s / 60.0),
+    }
+}
+
+/// A length with four digits that matter: `47.97`, `0.001234`, `1.234e-9`.
+pub fn significant(length: f64) -> String {
+    if length == 0.0 {
+        return "0".to_owned();
+    }
+    if !(1e-4..1e6).contains(&length.abs()) {
+        return format!("{length:.3e}");
+    }
+    let digits_before = length.abs().log10().floor() as i32;
+    let digits_behind = usize::try_from(3 - digits_before).unwrap_or(0);
+    format!("{length:.digits_behind$}")
+}
+
+/// Lines of a name and what belongs to it, the second column aligned.
+pub fn pairs(rows: &[(&str, String)]) -> String {
+    let width = rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
+    rows.iter().map(|(name, value)| format!("{name:width$}  {value}\n")).collect()
+}
+
+/// A table: the first column to the left, all others to the right, two blanks between them.
+pub fn table(heads: &[&str], rows: &[Vec<String>]) -> String {
+    let width = |column: usize| {
+        let cells = rows.iter().filter_map(|r| r.get(column)).map(|c| c.chars().count());
+        cells.chain([heads[column].chars().count()]).max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..heads.len()).map(width).collect();
+    let head: Vec<String> = heads.iter().map(|h| (*h).to_owned()).collect();
+    std::iter::once(&head).chain(rows).map(|row| line(row, &widths)).collect()
+}
+
+fn line(row: &[String], widths: &[usize]) -> String {
+    let cells: Vec<String> = row
+        .iter()
+        .zip(widths)
+        .enumerate()
+        .map(|(i, (cell, &width))| if i == 0 { format!("{cell:width$}") } else { format!("{cell:>width$}") })
+        .collect();
+    cells.join("  ").trim_end().to_owned() + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thousands_are_set_apart() {
+        assert_eq!([0, 999, 1000, 871_414, 1_000_000].map(count), ["0", "999", "1,000", "871,414", "1,000,000"]);
+    }
+
+    #[test]
+    fn lengths_keep_four_digits() {
+        let shown = [0.0, 47.971, 0.001_234_5, 123_456.7, 1.234e-9, 2.5e9].map(significant);
+        assert_eq!(shown, ["0", "47.97", "0.001234", "123457", "1.234e-9", "2.500e9"]);
+    }
+
+    #[test]
+    fn table_aligns_numbers_right() {
+        let rows = [vec!["a".to_owned(), "10".to_owned()], vec!["long".to_owned(), "7".to_owned()]];
+        assert_eq!(table(&["file", "n"], &rows), "file   n\na     10\nlong   7\n");
+    }
+}

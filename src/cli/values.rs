@@ -1,0 +1,163 @@
+//! Values of flags: sizes, ratios, directions. Each message says what was probably meant.
+
+use std::time::Duration;
+
+/// Numbers of cameras that the octahedral pattern has.
+const CAMERA_COUNTS: [usize; 6] = [6, 18, 66, 258, 1026, 4098];
+
+/// One level of detail as `--lods` names it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LevelSize {
+    /// A share of the triangles, in (0, 1].
+    Ratio(f64),
+    /// A number of triangles.
+    Triangles(usize),
+}
+
+/// A size in bytes: `2G`, `500M`, `1.5GiB`, `1000000`. A unit is a power of 1024.
+pub fn bytes(text: &str) -> Result<u64, String> {
+    let form = "write a size as 2G or 500M";
+    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let number: f64 = digits.parse().map_err(|_| form.to_owned())?;
+    let unit: f64 = match text[digits.len()..].to_ascii_lowercase().as_str() {
+        "" | "b" => 1.0,
+        "k" | "kb" | "kib" => 1024.0,
+        "m" | "mb" | "mib" => 1024.0 * 1024.0,
+        "g" | "gb" | "gib" => 1024.0 * 1024.0 * 1024.0,
+        "t" | "tb" | "tib" => 1024.0 * 1024.0 * 1024.0 * 1024.0,
+        other => return Err(format!("'{other}' is no unit of size; {form}")),
+    };
+    let bytes = number * unit;
+    // The cast saturates, and a limit beyond 2^64 bytes is no limit.
+    if bytes >= 1.0 { Ok(bytes as u64) } else { Err(format!("must be at least one byte; {form}")) }
+}
+
+/// A time limit in seconds, above 0.
+pub fn seconds(text: &str) -> Result<Duration, String> {
+    let form = "write seconds as 90 or 0.5";
+    let number: f64 = text.parse().map_err(|_| form.to_owned())?;
+    if number > 0.0 { Duration::try_from_secs_f64(number).map_err(|e| e.to_string()) } else { Err(form.to_owned()) }
+}
+
+/// A number of octahedral cameras.
+pub fn cameras(text: &str) -> Result<usize, String> {
+    let number = text.parse().ok().filter(|n| CAMERA_COUNTS.contains(n));
+    number.ok_or_else(|| "the pattern has 6, 18, 66, 258, 1026 or 4098 cameras".to_owned())
+}
+
+/// A number of triangles, at least 1.
+pub fn triangles(text: &str) -> Result<usize, String> {
+    match text.parse::<usize>() {
+        Ok(0) => Err("a mesh needs at least 1 triangle".to_owned()),
+        Ok(number) => Ok(number),
+        Err(_) if is_share(text) => {
+            Err(format!("is no whole number; for a share of the triangles write --ratio {text}"))
+        }
+        Err(_) => Err("write a whole number, at least 1".to_owned()),
+    }
+}
+
+/// A ratio, in (0, 1].
+pub fn ratio(text: &str) -> Result<f64, String> {
+    let meaning = "a ratio is triangles kept ÷ given, above 0 and at most 1";
+    if let Some(percent) = text.strip_suffix('%').and_then(|p| p.parse::<f64>().ok()) {
+        return Err(format!("{meaning}; for {percent} % write --ratio {}", percent / 100.0));
+    }
+    let number: f64 = text.parse().map_err(|_| meaning.to_owned())?;
+    if number > 0.0 && number <= 1.0 {
+        Ok(number)
+    } else if number > 1.0 && number <= 100.0 {
+        Err(format!("{meaning}; for {number} % write --ratio {}", number / 100.0))
+    } else if number > 100.0 && number.is_finite() {
+        Err(format!("{meaning}; for {} triangles write --triangles {}", number.trunc(), number.trunc()))
+    } else {
+        Err(meaning.to_owned())
+    }
+}
+
+fn is_share(text: &str) -> bool {
+    text.parse::<f64>().is_ok_and(|n| n > 0.0 && n < 1.0)
+}
+
+/// One level of `--lods`: a ratio up to 1, or a whole number of triangles from 2.
+pub fn level_size(text: &str) -> Result<LevelSize, String> {
+    match text.parse::<usize>() {
+        Ok(number) if number >= 2 => Ok(LevelSize::Triangles(number)),
+        _ => {
+            let message = "write each level as a ratio up to 1 or as a number of triangles from 2";
+            ratio(text).map(LevelSize::Ratio).map_err(|_| message.to_owned())
+        }
+    }
+}
+
+/// A length in model units, finite and above 0.
+pub fn length(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|n: &f64| n.is_finite() && *n > 0.0);
+    number.ok_or_else(|| "write a length in model units, above 0".to_owned())
+}
+
+/// A finite number, at least 0.
+pub fn non_negative(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|n: &f64| n.is_finite() && *n >= 0.0);
+    number.ok_or_else(|| "write a number, at least 0".to_owned())
+}
+
+/// A direction `x,y,z` of any length but 0.
+pub fn direction(text: &str) -> Result<[f64; 3], String> {
+    let form = "write a direction as x,y,z, such as 1,1,0.5; 0,0,0 is none";
+    let numbers: Vec<f64> = text.split(',').map(|n| n.trim().parse()).collect::<Result<_, _>>().map_err(|_| form)?;
+    let xyz = <[f64; 3]>::try_from(numbers).map_err(|_| form)?;
+    let usable = xyz.iter().all(|c| c.is_finite() && c.abs() < 1e100) && xyz.iter().any(|c| c.abs() > 1e-100);
+    if usable { Ok(xyz) } else { Err(form.to_owned()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_read_as_people_write_them() {
+        assert_eq!(bytes("2G"), Ok(2 << 30));
+        assert_eq!(bytes("500M"), Ok(500 << 20));
+        assert_eq!(bytes("1.5kib"), Ok(1536));
+        assert_eq!(bytes("77"), Ok(77));
+        for wrong in ["", "G", "-1G", "0", "2X", "nan", "2 G"] {
+            assert!(bytes(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn ratio_above_one_says_what_was_meant() {
+        assert_eq!(ratio("0.05"), Ok(0.05));
+        assert_eq!(ratio("1"), Ok(1.0));
+        assert!(ratio("5").is_err_and(|m| m.ends_with("for 5 % write --ratio 0.05")));
+        assert!(ratio("5%").is_err_and(|m| m.ends_with("for 5 % write --ratio 0.05")));
+        assert!(ratio("5000").is_err_and(|m| m.ends_with("write --triangles 5000")));
+        for wrong in ["0", "-0.1", "nan", "inf", "x"] {
+            assert!(ratio(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn zero_triangles_and_shares_are_no_counts() {
+        assert_eq!(triangles("7"), Ok(7));
+        assert!(triangles("0").is_err());
+        assert!(triangles("0.5").is_err_and(|m| m.contains("--ratio 0.5")));
+    }
+
+    #[test]
+    fn levels_are_ratios_or_counts() {
+        assert_eq!(level_size("0.5"), Ok(LevelSize::Ratio(0.5)));
+        assert_eq!(level_size("1"), Ok(LevelSize::Ratio(1.0)));
+        assert_eq!(level_size("5000"), Ok(LevelSize::Triangles(5000)));
+        assert!(level_size("1.5").is_err());
+    }
+
+    #[test]
+    fn directions_need_three_numbers_and_a_length() {
+        assert_eq!(direction("1, 0,-2"), Ok([1.0, 0.0, -2.0]));
+        for wrong in ["", "1,2", "0,0,0", "1,2,3,4", "nan,0,1", "1,,2"] {
+            assert!(direction(wrong).is_err(), "{wrong}");
+        }
+    }
+}

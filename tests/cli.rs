@@ -1,0 +1,368 @@
+//! The program as its users meet it: exit codes, messages, JSON, files.
+
+#![allow(clippy::unwrap_used)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command as Process, Stdio};
+use std::time::{Duration, Instant};
+
+use assert_cmd::Command;
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// A cube of twelve triangles.
+const CUBE: &str = "OFF\n8 12 0\n-1 -1 -1\n1 -1 -1\n-1 1 -1\n1 1 -1\n-1 -1 1\n1 -1 1\n-1 1 1\n1 1 1\n\
+    3 0 4 6\n3 0 6 2\n3 1 3 7\n3 1 7 5\n3 0 1 5\n3 0 5 4\n3 2 6 7\n3 2 7 3\n3 0 2 3\n3 0 3 1\n3 4 5 7\n3 4 7 6\n";
+
+/// Fewer pixels than any default, for speed.
+const SMALL: [&str; 4] = ["--cameras", "18", "--resolution", "64"];
+
+/// A directory with `cube.off` and `bumps.off`, an open sheet of 2·40·40 triangles.
+fn directory() -> TempDir {
+    let directory = tempfile::tempdir().unwrap();
+    fs::write(directory.path().join("cube.off"), CUBE).unwrap();
+    fs::write(directory.path().join("bumps.off"), bumps(40)).unwrap();
+    directory
+}
+
+/// A square sheet of 2·n·n triangles over a landscape of integer heights.
+fn bumps(n: usize) -> String {
+    let side = n + 1;
+    let mut text = format!("OFF\n{} {} 0\n", side * side, 2 * n * n);
+    for i in 0..side * side {
+        text += &format!("{} {} {}\n", i % side, i / side, (i * 7919) % 5);
+    }
+    for i in (0..n * side).filter(|i| i % side < n) {
+        text += &format!("3 {} {} {}\n3 {} {} {}\n", i, i + 1, i + side, i + 1, i + side + 1, i + side);
+    }
+    text
+}
+
+fn outsight(directory: &Path) -> Command {
+    let mut command = Command::cargo_bin("outsight").unwrap();
+    command.current_dir(directory);
+    command
+}
+
+/// What a run left: its exit code, standard output and standard error.
+struct Ended {
+    code: i32,
+    out: String,
+    err: String,
+}
+
+fn run(directory: &Path, arguments: &[&str]) -> Ended {
+    let output = outsight(directory).args(arguments).output().unwrap();
+    Ended {
+        code: output.status.code().unwrap(),
+        out: String::from_utf8_lossy(&output.stdout).into_owned(),
+        err: String::from_utf8_lossy(&output.stderr).into_owned(),
+    }
+}
+
+fn json(directory: &Path, arguments: &[&str]) -> Value {
+    let ended = run(directory, arguments);
+    assert_eq!(ended.code, 0, "{}", ended.err);
+    assert_eq!(ended.out.lines().count(), 1, "one object and nothing else: {}", ended.out);
+    serde_json::from_str(&ended.out).unwrap()
+}
+
+fn keys(value: &Value) -> Vec<&str> {
+    value.as_object().unwrap().keys().map(String::as_str).collect()
+}
+
+/// All of `wanted`, in that order, at the head of the object.
+fn assert_begins_with(value: &Value, wanted: &[&str]) {
+    assert_eq!(&keys(value)[..wanted.len()], wanted);
+}
+
+fn names(directory: &Path) -> Vec<String> {
+    let mut names: Vec<String> =
+        fs::read_dir(directory).unwrap().map(|e| e.unwrap().file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn every_exit_code_has_its_cause() {
+    let home = directory();
+    fs::write(home.path().join("bad.off"), "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 9\n").unwrap();
+    let code = |arguments: &[&str]| run(home.path(), arguments).code;
+    assert_eq!(code(&["info", "cube.off"]), 0);
+    assert_eq!(code(&["--help"]), 0);
+    assert_eq!(code(&["--version"]), 0);
+    assert_eq!(code(&[]), 2, "no command");
+    assert_eq!(code(&["simplify", "cube.off", "-o", "x.ply"]), 2, "no target");
+    assert_eq!(code(&["simplify", "cube.off", "-o", "x.png", "-t", "4"]), 2, "unknown ending");
+    assert_eq!(code(&["info", "missing.ply"]), 3);
+    assert_eq!(code(&["info", "bad.off"]), 3);
+    assert_eq!(code(&["convert", "cube.off", "no/such/x.ply"]), 4);
+    assert_eq!(code(&["convert", "bumps.off", "x.ply", "--memory-limit", "1k"]), 5);
+    assert_eq!(code(&["measure", "bumps.off", "--time-limit", "0.000001"]), 5);
+    assert_eq!(code(&["measure", "cube.off", "--backend", "embree"]), 6);
+    assert_eq!(names(home.path()), ["bad.off", "bumps.off", "cube.off"], "nothing is written on the way");
+}
+
+#[test]
+fn what_this_version_lacks_is_named_with_what_to_use_instead() {
+    let home = directory();
+    let cases: [(&[&str], &str); 6] = [
+        (&["measure", "cube.off", "--backend", "gpu"], "--backend raster"),
+        (&["measure", "cube.off", "--estimator", "item-buffer"], "--estimator coverage"),
+        (&["measure", "cube.off", "--estimator", "hemisphere"], "--estimator coverage"),
+        (&["simplify", "cube.off", "-o", "x.ply", "-t", "4", "--metric", "orientation"], "--metric visibility"),
+        (&["simplify", "cube.off", "-o", "x.ply", "-t", "4", "--metric", "silhouette"], "--metric visibility"),
+        (&["simplify", "cube.off", "-o", "x.ply", "-t", "4", "--refit", "guarded"], "--refit none"),
+    ];
+    for (arguments, instead) in cases {
+        let ended = run(home.path(), arguments);
+        assert_eq!(ended.code, 6, "{arguments:?}: {}", ended.err);
+        assert!(ended.err.contains(instead), "{arguments:?}: {}", ended.err);
+    }
+}
+
+#[test]
+fn wrong_sizes_say_what_was_meant() {
+    let home = directory();
+    let message = |size: &[&str]| {
+        let ended = run(home.path(), &[&["simplify", "cube.off", "-o", "x.ply"], size].concat());
+        assert_eq!(ended.code, 2, "{size:?}");
+        ended.err
+    };
+    assert!(message(&["--ratio", "5"]).contains("for 5 % write --ratio 0.05"));
+    assert!(message(&["-r", "5000"]).contains("write --triangles 5000"));
+    assert!(message(&["-t", "0"]).contains("at least 1 triangle"));
+    assert!(message(&["-t", "0.1"]).contains("write --ratio 0.1"));
+    assert!(message(&["--lods", "0.1,0.5"]).contains("--lods"));
+    assert!(message(&["-r", "0.5", "--hidden", "delete", "--metric", "quadric"]).contains("--metric visibility"));
+}
+
+#[test]
+fn errors_say_what_and_where_in_one_line() {
+    let home = directory();
+    fs::write(home.path().join("bad.off"), "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 9\n").unwrap();
+    let ended = run(home.path(), &["info", "bad.off"]);
+    assert!(ended.out.is_empty());
+    assert!(ended.err.starts_with("error: bad.off"), "{}", ended.err);
+    assert_eq!(ended.err.lines().count(), 1, "{}", ended.err);
+    let ended = run(home.path(), &["info", "missing.ply"]);
+    assert!(ended.err.starts_with("error: missing.ply: "), "{}", ended.err);
+}
+
+#[test]
+fn measure_json_has_the_promised_keys() {
+    let home = directory();
+    let object = json(home.path(), &[&["measure", "cube.off", "--json"], &SMALL[..]].concat());
+    assert_begins_with(&object, &["schema", "triangles", "cameras", "resolution", "backend", "estimator"]);
+    assert_eq!(object["schema"], 1);
+    assert_eq!(object["triangles"], 12);
+    assert_eq!(object["backend"], "raster");
+    assert_eq!(object["estimator"], "coverage");
+    assert_eq!(keys(&object["visibility"]), ["mesh", "mesh_sides", "never_seen"]);
+    assert_eq!(keys(&object["seconds"]), ["read", "build", "visibility", "total"]);
+    assert!(object["peak_mb"].is_number() || !cfg!(target_os = "linux"));
+    assert_eq!((&object["dropped"], &object["warnings"]), (&Value::Array(vec![]), &Value::Array(vec![])));
+}
+
+#[test]
+fn simplify_json_has_the_promised_keys() {
+    let home = directory();
+    let arguments = ["simplify", "bumps.off", "-o", "x.ply", "--lods", "0.5,0.25,100", "--json"];
+    let object = json(home.path(), &[&arguments[..], &SMALL].concat());
+    assert_begins_with(&object, &["schema", "levels", "triangles", "metric"]);
+    assert_eq!(
+        (&object["schema"], &object["triangles"], &object["metric"]),
+        (&1.into(), &3200.into(), &"visibility".into())
+    );
+    assert_eq!(keys(&object["seconds"]), ["read", "visibility", "simplify", "write", "total"]);
+    assert!(object.get("peak_mb").is_some());
+    let levels = object["levels"].as_array().unwrap();
+    for (level, (target, file)) in levels.iter().zip([(1600, "x-lod0.ply"), (800, "x-lod1.ply"), (100, "x-lod2.ply")]) {
+        assert_begins_with(level, &["target", "output", "stop", "error", "file"]);
+        assert_eq!((&level["target"], &level["file"]), (&target.into(), &file.into()));
+        assert_eq!(level["stop"], "target");
+        assert!(level["output"].as_u64().unwrap() <= target);
+        assert_eq!(json(home.path(), &["info", file, "--json"])["triangles"], level["output"]);
+    }
+    assert_eq!(levels.len(), 3);
+}
+
+#[test]
+fn compare_json_has_the_promised_keys() {
+    let home = directory();
+    let object = json(home.path(), &["compare", "cube.off", "cube.off", "bumps.off", "--samples", "100", "--json"]);
+    assert_begins_with(&object, &["schema", "tests"]);
+    let tests = object["tests"].as_array().unwrap();
+    assert_eq!(tests.len(), 2);
+    for test in tests {
+        let promised = ["file", "triangles", "image_rms", "image_rmse", "silhouette_xor", "geometric"];
+        assert_eq!(keys(test), promised);
+        assert_eq!(keys(&test["geometric"]), ["mean", "rms", "max"]);
+    }
+    assert_eq!(tests[0]["image_rmse"], 0.0, "a mesh equals itself");
+}
+
+#[test]
+fn measure_writes_what_the_ending_says() {
+    let home = directory();
+    for name in ["v.ply", "v.npy", "v.csv"] {
+        let ended = run(home.path(), &[&["measure", "cube.off", "-o", name], &SMALL[..]].concat());
+        assert_eq!(ended.code, 0, "{}", ended.err);
+    }
+    let start = |name: &str| String::from_utf8_lossy(&fs::read(home.path().join(name)).unwrap()).into_owned();
+    assert!(start("v.ply").contains("visibility"));
+    assert!(start("v.npy").contains("NUMPY"));
+    assert_eq!(start("v.csv").lines().count(), 13, "a head and twelve triangles");
+}
+
+#[test]
+fn pictures_are_png_files() {
+    let home = directory();
+    let arguments = ["render", "cube.off", "-o", "r.png", "--style", "heat", "--size", "64", "--camera", "-1,-1,1"];
+    assert_eq!(run(home.path(), &[&arguments[..], &SMALL].concat()).code, 0);
+    let compared = run(home.path(), &["compare", "cube.off", "cube.off", "-o", "c.png", "--samples", "100"]);
+    assert_eq!(compared.code, 0, "{}", compared.err);
+    for name in ["r.png", "c.png"] {
+        assert!(fs::read(home.path().join(name)).unwrap().starts_with(b"\x89PNG"), "{name}");
+    }
+}
+
+#[test]
+fn nothing_is_overwritten_without_force_and_no_input_with_it() {
+    let home = directory();
+    fs::write(home.path().join("old.ply"), "old").unwrap();
+    let refused = run(home.path(), &["convert", "cube.off", "old.ply"]);
+    assert_eq!(refused.code, 4);
+    assert!(refused.err.contains("--force"), "{}", refused.err);
+    assert_eq!(fs::read_to_string(home.path().join("old.ply")).unwrap(), "old");
+    assert_eq!(run(home.path(), &["convert", "cube.off", "old.ply", "--force"]).code, 0);
+    assert_eq!(run(home.path(), &["convert", "cube.off", "./cube.off", "--force"]).code, 2);
+    assert_eq!(fs::read_to_string(home.path().join("cube.off")).unwrap(), CUBE);
+}
+
+#[test]
+fn outputs_are_checked_before_the_input_is_read() {
+    let home = directory();
+    fs::write(home.path().join("old.ply"), "old").unwrap();
+    let ended = run(home.path(), &["simplify", "missing.off", "-o", "old.ply", "-r", "0.5"]);
+    assert_eq!(ended.code, 4, "the output, not the missing input, is named: {}", ended.err);
+}
+
+#[test]
+fn warnings_are_lines_and_entries_and_errors_under_strict() {
+    let home = directory();
+    let mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\nf 1 1 2\n";
+    fs::write(home.path().join("n.obj"), mesh).unwrap();
+    let ended = run(home.path(), &["convert", "n.obj", "n.ply"]);
+    assert_eq!(ended.code, 0, "{}", ended.err);
+    assert_eq!(ended.err.lines().filter(|l| l.starts_with("warning: n.obj: ")).count(), 2, "{}", ended.err);
+    assert!(ended.err.contains("normals"), "{}", ended.err);
+
+    let object = json(home.path(), &["convert", "n.obj", "m.ply", "--json"]);
+    assert_eq!(object["dropped"], serde_json::json!(["normals"]));
+    assert_eq!(object["set_aside"], 1);
+    assert_eq!(object["warnings"].as_array().unwrap().len(), 2);
+
+    let strict = run(home.path(), &["convert", "n.obj", "s.ply", "--strict"]);
+    assert_eq!(strict.code, 3);
+    assert!(!home.path().join("s.ply").exists());
+}
+
+#[test]
+fn pipes_carry_meshes_and_nothing_else() {
+    let home = directory();
+    let output =
+        outsight(home.path()).args(["convert", "-", "-", "--output-format", "stl"]).write_stdin(CUBE).output().unwrap();
+    assert_eq!(output.stdout.len(), 84 + 12 * 50, "{}", String::from_utf8_lossy(&output.stderr));
+    let nameless = run(home.path(), &["convert", "cube.off", "-"]);
+    assert_eq!(nameless.code, 2);
+    assert_eq!(run(home.path(), &["convert", "cube.off", "-", "--output-format", "ply", "--json"]).code, 2);
+}
+
+#[test]
+fn quiet_says_nothing() {
+    let home = directory();
+    let ended = run(home.path(), &["convert", "-q", "cube.off", "x.ply"]);
+    assert_eq!((ended.code, ended.out.as_str(), ended.err.as_str()), (0, "", ""));
+}
+
+#[test]
+fn progress_is_shown_only_where_asked() {
+    let home = directory();
+    let measure = |more: &[&str]| run(home.path(), &[&["measure", "cube.off"], &SMALL[..], more].concat()).err;
+    assert_eq!(measure(&[]), "", "no terminal, no bars");
+    assert!(measure(&["--progress", "always"]).contains("100 %"));
+    assert_eq!(measure(&["--progress", "always", "-q"]), "");
+}
+
+#[test]
+fn doctor_checks_itself() {
+    let home = directory();
+    let object = json(home.path(), &["doctor", "--json"]);
+    assert_eq!(object["self_check"]["passed"], true);
+    assert_eq!(object["backends"][0]["works"], true);
+}
+
+#[test]
+fn manual_and_completions_cover_every_command() {
+    let home = directory();
+    assert!(run(home.path(), &["man"]).out.contains(".TH outsight 1"));
+    assert_eq!(run(home.path(), &["man", "--dir", "."]).code, 0);
+    assert!(fs::read_to_string(home.path().join("outsight-simplify.1")).unwrap().contains("lods"));
+    assert_eq!(run(home.path(), &["man", "--dir", "."]).code, 4, "pages are not overwritten");
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        assert!(run(home.path(), &["completions", shell]).out.contains("simplify"), "{shell}");
+    }
+}
+
+#[test]
+fn help_of_every_command_ends_with_examples() {
+    let home = directory();
+    let commands =
+        ["demo", "info", "measure", "simplify", "compare", "render", "convert", "doctor", "completions", "man"];
+    for command in commands {
+        let help = run(home.path(), &[command, "--help"]).out;
+        let examples = help.split("Example").nth(1).unwrap_or_default();
+        assert!(examples.contains(&format!("outsight {command}")), "{command}");
+        assert!(help.lines().all(|line| line.chars().count() <= 120), "{command}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn closed_pipe_ends_quietly() {
+    let home = directory();
+    // Neither text, help nor a mesh finds a reader; `true` closes its end at once.
+    for command in ["completions bash", "info cube.off", "--help", "convert bumps.off - --output-format obj"] {
+        let binary = assert_cmd::cargo::cargo_bin("outsight");
+        let script = format!("set -o pipefail; {} {command} | true", binary.display());
+        let output = Process::new("bash").args(["-c", &script]).current_dir(home.path()).output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{command}");
+        assert!(output.stderr.is_empty(), "{command}: {}", String::from_utf8_lossy(&output.stderr));
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn signals_end_the_work_and_leave_no_file() {
+    for (signal, code) in [("INT", 130), ("TERM", 143)] {
+        let home = directory();
+        let binary: PathBuf = assert_cmd::cargo::cargo_bin("outsight");
+        // Long enough to be interrupted: 4098 cameras at 4096 pixels are minutes of work.
+        let child = Process::new(binary)
+            .args(["measure", "bumps.off", "-o", "v.ply", "--cameras", "4098", "--resolution", "4096"])
+            .current_dir(home.path())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(Duration::from_millis(700));
+        let start = Instant::now();
+        Process::new("kill").args(["-s", signal, &child.id().to_string()]).status().unwrap();
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(code));
+        assert!(start.elapsed() < Duration::from_secs(20), "it stops between two images");
+        assert!(String::from_utf8_lossy(&output.stderr).contains("nothing was written"));
+        assert_eq!(names(home.path()), ["bumps.off", "cube.off"]);
+    }
+}
