@@ -211,6 +211,9 @@ impl RowDepth {
     /// Depth at the centre of a pixel; kept between the corners, where a triangle seen edge-on would overshoot.
     #[inline]
     fn at(&self, column: i32) -> i32 {
-        round_to_i32((self.start + f64::from(column) * self.per_pixel).max(self.least).min(self.most))
+        let depth = self.start + f64::from(column) * self.per_pixel;
+        // Spelled out because `f64::max` also looks after NaN, which cannot be here.
+        let depth = if depth < self.least { self.least } else { depth };
+        round_to_i32(if depth > self.most { self.most } else { depth })
     }
 }

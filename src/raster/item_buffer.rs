@@ -104,8 +104,15 @@ pub(super) fn tag(hit: Hit) -> u32 {
 #[inline]
 pub(super) fn offer(keys: &mut [u64; 2], depth: i32, tag: u32) {
     let closeness = depth as u32 ^ 0x8000_0000;
-    keys[0] = keys[0].max(u64::from(closeness) << 32 | u64::from(tag));
-    keys[1] = keys[1].max(u64::from(!closeness) << 32 | u64::from(tag));
+    let near = u64::from(closeness) << 32 | u64::from(tag);
+    let far = u64::from(!closeness) << 32 | u64::from(tag);
+    // Branches, not maxima: most surface lies between two others, so that both are foreseen and nothing is written.
+    if near > keys[0] {
+        keys[0] = near;
+    }
+    if far > keys[1] {
+        keys[1] = far;
+    }
 }
 
 #[inline]
