@@ -5,6 +5,10 @@
 //! one triangle. What a file holds beyond that is set aside, and counted, by [`TriMesh::from_triangles`].
 
 pub mod adjacency;
+mod part;
+
+pub(crate) use part::number_marked;
+pub use part::{Remainder, compose_maps};
 
 use glam::DVec3;
 

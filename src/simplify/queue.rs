@@ -5,24 +5,17 @@ use crate::mesh::adjacency::NONE;
 /// Children of a heap node. Four halve the depth against two, and their costs share a cache line.
 const ARITY: usize = 4;
 
-/// What orders an edge, beside its cost.
-#[derive(Debug, Clone, Copy)]
-pub struct Edge {
-    /// Its two vertices.
-    pub ends: [u32; 2],
-    /// Its squared length in unit-sphere coordinates, rounded so that lengths equal but for rounding are equal.
-    pub length_squared: f32,
-}
-
-/// A key in the making: what [`EdgeQueue::set`] puts an edge under.
+/// What [`EdgeQueue::set`] puts an edge under.
 #[derive(Debug, Clone, Copy)]
 pub struct Key {
     /// First criterion.
     pub cost: f64,
     /// Second criterion, ignored by a queue without second costs.
     pub second_cost: f64,
-    /// The further criteria: length, smaller vertex, larger vertex.
-    pub edge: Edge,
+    /// Third criterion: the squared length, rounded so that lengths equal but for rounding are equal.
+    pub length_squared: f32,
+    /// The edge's vertices; smaller, then larger are the last criteria.
+    pub ends: [u32; 2],
 }
 
 /// An indexed heap of edges by (cost, second cost, length, smaller vertex, larger vertex), all ascending.
@@ -33,33 +26,38 @@ pub struct EdgeQueue {
     costs: Vec<f64>,
     items: Vec<u32>,
     place: Vec<u32>,
-    edges: Vec<Edge>,
+    ends: Vec<[u32; 2]>,
+    lengths_squared: Vec<f32>,
     second_costs: Vec<f64>,
 }
 
 impl EdgeQueue {
-    /// A queue of these edges by their keys, in linear time. `None` keeps an edge out for now.
+    /// A queue of edges between these ends, in linear time.
     ///
-    /// Second costs are stored only if `has_second_cost`.
-    pub fn new(ends: &[[u32; 2]], has_second_cost: bool, mut key: impl FnMut([u32; 2]) -> (Edge, Option<Key>)) -> Self {
+    /// `rate` gives an edge's squared length and its two costs, `None` to keep it out for now. Second costs are stored
+    /// only if `has_second_cost`.
+    pub fn new(
+        ends: Vec<[u32; 2]>,
+        has_second_cost: bool,
+        mut rate: impl FnMut([u32; 2]) -> (f32, Option<[f64; 2]>),
+    ) -> Self {
         let count = ends.len();
         let mut queue = Self {
             costs: Vec::with_capacity(count),
             items: Vec::with_capacity(count),
             place: vec![NONE; count],
-            edges: Vec::with_capacity(count),
+            ends,
+            lengths_squared: Vec::with_capacity(count),
             second_costs: vec![0.0; if has_second_cost { count } else { 0 }],
         };
-        for (id, &ends) in ends.iter().enumerate() {
-            let (edge, key) = key(ends);
-            queue.edges.push(edge);
-            if let Some(key) = key {
-                queue.place[id] = queue.items.len() as u32;
-                queue.items.push(id as u32);
-                queue.costs.push(key.cost);
-                if has_second_cost {
-                    queue.second_costs[id] = key.second_cost;
-                }
+        for edge in 0..count {
+            let (length_squared, costs) = rate(queue.ends[edge]);
+            queue.lengths_squared.push(length_squared);
+            if let Some([cost, second_cost]) = costs {
+                queue.place[edge] = queue.items.len() as u32;
+                queue.items.push(edge as u32);
+                queue.costs.push(cost);
+                queue.second_costs.get_mut(edge).into_iter().for_each(|second| *second = second_cost);
             }
         }
         for node in (0..queue.items.len().div_ceil(ARITY)).rev() {
@@ -70,7 +68,7 @@ impl EdgeQueue {
 
     /// The two vertices of an edge.
     pub fn ends(&self, edge: u32) -> [u32; 2] {
-        self.edges[edge as usize].ends
+        self.ends[edge as usize]
     }
 
     /// Whether the edge waits in the queue.
@@ -102,7 +100,8 @@ impl EdgeQueue {
 
     /// Puts an edge under a new key, whether or not it was in the queue.
     pub fn set(&mut self, edge: u32, key: Key) {
-        self.edges[edge as usize] = key.edge;
+        self.ends[edge as usize] = key.ends;
+        self.lengths_squared[edge as usize] = key.length_squared;
         if let Some(second) = self.second_costs.get_mut(edge as usize) {
             *second = key.second_cost;
         }
@@ -117,9 +116,9 @@ impl EdgeQueue {
     }
 
     /// Takes an edge out and gives it new ends, for an edge that may not collapse.
-    pub fn set_aside(&mut self, edge: u32, record: Edge) {
+    pub fn set_aside(&mut self, edge: u32, ends: [u32; 2]) {
         self.remove(edge);
-        self.edges[edge as usize] = record;
+        self.ends[edge as usize] = ends;
     }
 
     fn restore(&mut self, node: usize) {
@@ -195,11 +194,76 @@ impl EdgeQueue {
         {
             return second_a < second_b;
         }
-        let (a, b) = (&self.edges[a], &self.edges[b]);
-        if a.length_squared != b.length_squared {
-            return a.length_squared < b.length_squared;
+        let (length_a, length_b) = (self.lengths_squared[a], self.lengths_squared[b]);
+        if length_a != length_b {
+            return length_a < length_b;
         }
         let sorted = |[u, v]: [u32; 2]| (u.min(v), u.max(v));
-        sorted(a.ends) < sorted(b.ends)
+        sorted(self.ends[a]) < sorted(self.ends[b])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A stream of numbers that look random, the same every time.
+    struct Stream(u64);
+
+    impl Stream {
+        fn next(&mut self, below: u64) -> u64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 33) % below
+        }
+    }
+
+    fn key(cost: f64, second_cost: f64, length_squared: f32, ends: [u32; 2]) -> Key {
+        Key { cost, second_cost, length_squared, ends }
+    }
+
+    fn drain(queue: &mut EdgeQueue) -> Vec<u32> {
+        std::iter::from_fn(|| queue.pop()).collect()
+    }
+
+    #[test]
+    fn ties_break_by_second_cost_then_length_then_vertices() {
+        let mut queue = EdgeQueue::new(vec![[0, 1]; 6], true, |_| (0.0, None));
+        queue.set(0, key(1.0, 0.0, 0.0, [0, 1]));
+        queue.set(1, key(0.0, 1.0, 0.0, [0, 1]));
+        queue.set(2, key(0.0, 0.0, 2.0, [0, 1]));
+        queue.set(3, key(0.0, 0.0, 1.0, [9, 3]));
+        queue.set(4, key(0.0, 0.0, 1.0, [3, 8]));
+        queue.set(5, key(0.0, 0.0, 1.0, [7, 2]));
+        assert_eq!(drain(&mut queue), [5, 4, 3, 2, 1, 0]);
+    }
+
+    #[test]
+    fn any_mix_of_operations_leaves_the_smallest_first() {
+        let count = 200;
+        let mut stream = Stream(1);
+        let ends: Vec<[u32; 2]> = (0..count).map(|e| [e, e + 1]).collect();
+        let mut expected: Vec<Option<u64>> = (0..count).map(|_| Some(stream.next(50))).collect();
+        let start = expected.clone();
+        let mut queue = EdgeQueue::new(ends, false, |[e, _]| (0.0, start[e as usize].map(|c| [c as f64, 0.0])));
+        for _ in 0..5000 {
+            let edge = stream.next(count.into()) as u32;
+            match stream.next(4) {
+                0 => {
+                    queue.remove(edge);
+                    expected[edge as usize] = None;
+                }
+                1 => {
+                    let first = (0..count).filter_map(|e| expected[e as usize].map(|c| (c, e))).min();
+                    assert_eq!(queue.pop(), first.map(|(_, e)| e));
+                    first.into_iter().for_each(|(_, e)| expected[e as usize] = None);
+                }
+                _ => {
+                    let cost = stream.next(50);
+                    queue.set(edge, key(cost as f64, 0.0, 0.0, [edge, edge + 1]));
+                    expected[edge as usize] = Some(cost);
+                }
+            }
+            assert_eq!(queue.contains(edge), expected[edge as usize].is_some());
+        }
     }
 }

@@ -73,9 +73,9 @@ impl Ring {
         self.ends = ends;
         self.on_edge.clear();
         self.neighbours.clear();
-        for side in 0..2 {
+        for (side, end) in ends.into_iter().enumerate() {
             self.survivors[side].clear();
-            for corner in surface.corners(ends[side]) {
+            for corner in surface.corners(end) {
                 self.sort_in(surface, side, corner);
             }
         }
