@@ -71,7 +71,7 @@ fn without_unused_vertices(mesh: &TriMesh) -> TriMesh {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn any_soup_gives_a_valid_level(mesh in soups(), options in options(), seed in any::<u64>()) {
