@@ -3,7 +3,7 @@
 use super::Stop;
 use super::guards::Guards;
 use super::metric::{Candidate, Metric};
-use super::queue::{EdgeQueue, Key};
+use super::queue::{EdgeQueue, Rated};
 use super::ring::Ring;
 use super::surface::{Corner, Surface};
 use crate::error::Result;
@@ -22,7 +22,7 @@ pub struct EdgeCollapser<M> {
     queue: EdgeQueue,
     ring: Ring,
     /// Scratch: edges about to return to the queue.
-    waiting: Vec<u32>,
+    rated: Vec<Rated>,
     withheld_by_error: bool,
 }
 
@@ -90,9 +90,8 @@ impl<M: Metric> EdgeCollapser<M> {
     pub fn new(surface: Surface, metric: M, edges: Vec<[u32; 2]>, locked: Vec<bool>, limits: Limits) -> Self {
         let count = surface.positions.len();
         let vertices = Vertices::new(locked);
-        let queue = EdgeQueue::new(edges, metric.has_second_cost(), |ends| {
-            let candidate = assess(&surface, &metric, &vertices, ends);
-            (length_squared(&surface, ends), candidate.map(|c| [c.cost, c.second_cost]))
+        let queue = EdgeQueue::new(edges, metric.has_second_cost(), |edge, ends| {
+            rate(&surface, &metric, &vertices, edge, ends)
         });
         Self {
             state: State { surface, vertices, tally: Tally::default() },
@@ -100,7 +99,7 @@ impl<M: Metric> EdgeCollapser<M> {
             limits,
             queue,
             ring: Ring::new(count),
-            waiting: Vec::new(),
+            rated: Vec::new(),
             withheld_by_error: false,
         }
     }
@@ -234,23 +233,18 @@ impl<M: Metric> EdgeCollapser<M> {
     }
 
     /// Gives every edge at the new vertex its new cost.
+    ///
+    /// All are rated before the first moves in the queue: the processor can then fetch the next quadrics while it
+    /// works on the last, which branches in the queue would keep it from.
     fn requeue_edges(&mut self, kept: u32, kept_side: usize) {
-        for i in 0..self.ring.neighbours.len() {
-            let neighbour = self.ring.neighbours[i];
+        let Self { state: State { surface, vertices, .. }, metric, queue, ring, rated, .. } = self;
+        rated.clear();
+        rated.extend(ring.neighbours.iter().map(|neighbour| {
             let kept_edge = neighbour.edges[kept_side];
             let edge = if kept_edge == NONE { neighbour.edges[1 - kept_side] } else { kept_edge };
-            self.requeue(edge, [kept, neighbour.vertex]);
-        }
-    }
-
-    fn requeue(&mut self, edge: u32, ends: [u32; 2]) {
-        match assess(&self.state.surface, &self.metric, &self.state.vertices, ends) {
-            Some(c) => {
-                let length_squared = length_squared(&self.state.surface, ends);
-                self.queue.set(edge, Key { cost: c.cost, second_cost: c.second_cost, ends, length_squared });
-            }
-            None => self.queue.set_aside(edge, ends),
-        }
+            rate(surface, metric, vertices, edge, [kept, neighbour.vertex])
+        }));
+        rated.iter().for_each(|rated| queue.place(rated));
     }
 
     /// Puts refused edges at the neighbours of `kept` back into the queue: their surroundings have changed.
@@ -265,16 +259,15 @@ impl<M: Metric> EdgeCollapser<M> {
     }
 
     fn retry_around(&mut self, vertex: u32) {
-        self.waiting.clear();
-        for corner in self.state.surface.corners(vertex) {
-            let triangle = self.state.surface.triangle(corner.triangle);
-            let [k1, k2] = corner.others();
-            self.waiting.extend([triangle.edges[k1], triangle.edges[k2]].iter().filter(|&&e| !self.queue.contains(e)));
+        let Self { state: State { surface, vertices, .. }, metric, queue, rated, .. } = self;
+        rated.clear();
+        for corner in surface.corners(vertex) {
+            let triangle = surface.triangle(corner.triangle);
+            let edges = corner.others().map(|k| triangle.edges[k]);
+            let waiting = edges.into_iter().filter(|&edge| !queue.contains(edge));
+            rated.extend(waiting.map(|edge| rate(surface, metric, vertices, edge, queue.ends(edge))));
         }
-        for i in 0..self.waiting.len() {
-            let edge = self.waiting[i];
-            self.requeue(edge, self.queue.ends(edge));
-        }
+        rated.iter().for_each(|rated| queue.place(rated));
     }
 }
 
@@ -290,11 +283,13 @@ fn adopt_edges(surface: &mut Surface, ring: &Ring, corner: Corner, kept_side: us
     }
 }
 
-/// What would become of the edge, `None` if both ends are locked.
+/// What would become of the edge between `ends`, `None` if both are locked.
 fn assess<M: Metric>(surface: &Surface, metric: &M, vertices: &Vertices, ends: [u32; 2]) -> Option<Candidate> {
     vertices.pinned(ends).map(|pinned| metric.candidate(surface, ends, pinned))
 }
 
-fn length_squared(surface: &Surface, [u, v]: [u32; 2]) -> f32 {
-    surface.positions[u as usize].distance_squared(surface.positions[v as usize]) as f32
+fn rate<M: Metric>(surface: &Surface, metric: &M, vertices: &Vertices, edge: u32, ends: [u32; 2]) -> Rated {
+    let [u, v] = ends.map(|v| surface.positions[v as usize]);
+    let costs = assess(surface, metric, vertices, ends).map(|c| [c.cost, c.second_cost]);
+    Rated { edge, ends, length_squared: u.distance_squared(v) as f32, costs }
 }

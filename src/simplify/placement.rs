@@ -62,10 +62,10 @@ fn minimum(q: &Quadric, anchor: DVec3, regulariser: f64) -> Option<DVec3> {
 /// After two, corners of right angle are met to the rounding error with the strongest pull allowed.
 const PULL_REPETITIONS: usize = 2;
 
-/// A symmetric 3 x 3 matrix as L D Lᵀ.
+/// A symmetric 3 x 3 matrix as L D Lᵀ; of D the reciprocals.
 struct Ldlt {
     l: [f64; 3],
-    d: [f64; 3],
+    inverse_d: [f64; 3],
 }
 
 impl Ldlt {
@@ -77,25 +77,27 @@ impl Ldlt {
         if d0 <= smallest {
             return None;
         }
-        let (l10, l20) = (xy / d0, xz / d0);
+        let inverse_d0 = d0.recip();
+        let (l10, l20) = (xy * inverse_d0, xz * inverse_d0);
         let d1 = yy + shift - l10 * xy;
         if d1 <= smallest {
             return None;
         }
+        let inverse_d1 = d1.recip();
         let yz_left = yz - l20 * xy;
-        let l21 = yz_left / d1;
+        let l21 = yz_left * inverse_d1;
         let d2 = zz + shift - l20 * xz - l21 * yz_left;
-        (d2 > smallest).then_some(Self { l: [l10, l20, l21], d: [d0, d1, d2] })
+        (d2 > smallest).then(|| Self { l: [l10, l20, l21], inverse_d: [inverse_d0, inverse_d1, d2.recip()] })
     }
 
     fn solve(&self, right: DVec3) -> DVec3 {
-        let [l10, l20, l21] = self.l;
+        let ([l10, l20, l21], [inverse_d0, inverse_d1, inverse_d2]) = (self.l, self.inverse_d);
         let y0 = right.x;
         let y1 = right.y - l10 * y0;
         let y2 = right.z - l20 * y0 - l21 * y1;
-        let x2 = y2 / self.d[2];
-        let x1 = y1 / self.d[1] - l21 * x2;
-        let x0 = y0 / self.d[0] - l10 * x1 - l20 * x2;
+        let x2 = y2 * inverse_d2;
+        let x1 = y1 * inverse_d1 - l21 * x2;
+        let x0 = y0 * inverse_d0 - l10 * x1 - l20 * x2;
         DVec3::new(x0, x1, x2)
     }
 }

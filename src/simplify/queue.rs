@@ -5,59 +5,49 @@ use crate::mesh::adjacency::NONE;
 /// Children of a heap node. Four halve the depth against two, and their costs share a cache line.
 const ARITY: usize = 4;
 
-/// What [`EdgeQueue::set`] puts an edge under.
+/// An edge and what it is sorted by.
 #[derive(Debug, Clone, Copy)]
-pub struct Key {
-    /// First criterion.
-    pub cost: f64,
-    /// Second criterion, ignored by a queue without second costs.
-    pub second_cost: f64,
-    /// Third criterion: the squared length, rounded so that lengths equal but for rounding are equal.
-    pub length_squared: f32,
-    /// The edge's vertices; smaller, then larger are the last criteria.
+pub struct Rated {
+    /// The edge.
+    pub edge: u32,
+    /// Its vertices; smaller, then larger are the last criteria.
     pub ends: [u32; 2],
+    /// Third criterion: its squared length, rounded so that lengths equal but for rounding are equal.
+    pub length_squared: f32,
+    /// First and second criterion; `None` for an edge that may not collapse and stays out of the queue.
+    pub costs: Option<[f64; 2]>,
 }
 
 /// An indexed heap of edges by (cost, second cost, length, smaller vertex, larger vertex), all ascending.
 ///
-/// The key of an edge changes only inside [`EdgeQueue::set`], so that the heap stays in order between any two calls.
+/// The key of an edge changes only inside [`EdgeQueue::place`], so that the heap stays in order between any two calls.
 #[derive(Debug)]
 pub struct EdgeQueue {
     costs: Vec<f64>,
     items: Vec<u32>,
-    place: Vec<u32>,
+    /// For each edge its node in the heap, [`NONE`] for an edge outside.
+    nodes: Vec<u32>,
     ends: Vec<[u32; 2]>,
     lengths_squared: Vec<f32>,
     second_costs: Vec<f64>,
 }
 
 impl EdgeQueue {
-    /// A queue of edges between these ends, in linear time.
-    ///
-    /// `rate` gives an edge's squared length and its two costs, `None` to keep it out for now. Second costs are stored
-    /// only if `has_second_cost`.
-    pub fn new(
-        ends: Vec<[u32; 2]>,
-        has_second_cost: bool,
-        mut rate: impl FnMut([u32; 2]) -> (f32, Option<[f64; 2]>),
-    ) -> Self {
+    /// A queue of the edges between these ends, in linear time. Second costs are stored only if `has_second_cost`.
+    pub fn new(ends: Vec<[u32; 2]>, has_second_cost: bool, mut rate: impl FnMut(u32, [u32; 2]) -> Rated) -> Self {
         let count = ends.len();
         let mut queue = Self {
             costs: Vec::with_capacity(count),
             items: Vec::with_capacity(count),
-            place: vec![NONE; count],
+            nodes: vec![NONE; count],
             ends,
-            lengths_squared: Vec::with_capacity(count),
+            lengths_squared: vec![0.0; count],
             second_costs: vec![0.0; if has_second_cost { count } else { 0 }],
         };
         for edge in 0..count {
-            let (length_squared, costs) = rate(queue.ends[edge]);
-            queue.lengths_squared.push(length_squared);
-            if let Some([cost, second_cost]) = costs {
-                queue.place[edge] = queue.items.len() as u32;
-                queue.items.push(edge as u32);
-                queue.costs.push(cost);
-                queue.second_costs.get_mut(edge).into_iter().for_each(|second| *second = second_cost);
+            let rated = rate(edge as u32, queue.ends[edge]);
+            if let Some(cost) = queue.record(&rated) {
+                queue.nodes[edge] = queue.append(cost, rated.edge) as u32;
             }
         }
         for node in (0..queue.items.len().div_ceil(ARITY)).rev() {
@@ -73,7 +63,7 @@ impl EdgeQueue {
 
     /// Whether the edge waits in the queue.
     pub fn contains(&self, edge: u32) -> bool {
-        self.place[edge as usize] != NONE
+        self.nodes[edge as usize] != NONE
     }
 
     /// Takes the first edge out.
@@ -85,7 +75,7 @@ impl EdgeQueue {
 
     /// Takes an edge out, if it is there.
     pub fn remove(&mut self, edge: u32) {
-        let node = std::mem::replace(&mut self.place[edge as usize], NONE) as usize;
+        let node = std::mem::replace(&mut self.nodes[edge as usize], NONE) as usize;
         if node >= self.items.len() {
             return;
         }
@@ -98,27 +88,36 @@ impl EdgeQueue {
         }
     }
 
-    /// Puts an edge under a new key, whether or not it was in the queue.
-    pub fn set(&mut self, edge: u32, key: Key) {
-        self.ends[edge as usize] = key.ends;
-        self.lengths_squared[edge as usize] = key.length_squared;
-        if let Some(second) = self.second_costs.get_mut(edge as usize) {
-            *second = key.second_cost;
-        }
-        let mut node = self.place[edge as usize] as usize;
+    /// Puts an edge where its new costs belong, whether or not it was in the queue.
+    pub fn place(&mut self, rated: &Rated) {
+        let edge = rated.edge;
+        let Some(cost) = self.record(rated) else {
+            // Where it lies in the queue does not matter for taking it out, as the last entry fills its node.
+            self.remove(edge);
+            return;
+        };
+        let mut node = self.nodes[edge as usize] as usize;
         if node >= self.items.len() {
-            node = self.items.len();
-            self.items.push(edge);
-            self.costs.push(key.cost);
+            node = self.append(cost, edge);
         }
-        self.put(node, key.cost, edge);
+        self.put(node, cost, edge);
         self.restore(node);
     }
 
-    /// Takes an edge out and gives it new ends, for an edge that may not collapse.
-    pub fn set_aside(&mut self, edge: u32, ends: [u32; 2]) {
-        self.remove(edge);
-        self.ends[edge as usize] = ends;
+    /// Takes over all but the first cost, which it returns.
+    fn record(&mut self, rated: &Rated) -> Option<f64> {
+        let edge = rated.edge as usize;
+        self.ends[edge] = rated.ends;
+        self.lengths_squared[edge] = rated.length_squared;
+        let [cost, second_cost] = rated.costs?;
+        self.second_costs.get_mut(edge).into_iter().for_each(|second| *second = second_cost);
+        Some(cost)
+    }
+
+    fn append(&mut self, cost: f64, item: u32) -> usize {
+        self.costs.push(cost);
+        self.items.push(item);
+        self.items.len() - 1
     }
 
     fn restore(&mut self, node: usize) {
@@ -130,7 +129,7 @@ impl EdgeQueue {
     fn put(&mut self, node: usize, cost: f64, item: u32) {
         self.costs[node] = cost;
         self.items[node] = item;
-        self.place[item as usize] = node as u32;
+        self.nodes[item as usize] = node as u32;
     }
 
     /// Whether it moved.
@@ -217,8 +216,8 @@ mod tests {
         }
     }
 
-    fn key(cost: f64, second_cost: f64, length_squared: f32, ends: [u32; 2]) -> Key {
-        Key { cost, second_cost, length_squared, ends }
+    fn rated(edge: u32, costs: [f64; 2], length_squared: f32, ends: [u32; 2]) -> Rated {
+        Rated { edge, ends, length_squared, costs: Some(costs) }
     }
 
     fn drain(queue: &mut EdgeQueue) -> Vec<u32> {
@@ -227,13 +226,15 @@ mod tests {
 
     #[test]
     fn ties_break_by_second_cost_then_length_then_vertices() {
-        let mut queue = EdgeQueue::new(vec![[0, 1]; 6], true, |_| (0.0, None));
-        queue.set(0, key(1.0, 0.0, 0.0, [0, 1]));
-        queue.set(1, key(0.0, 1.0, 0.0, [0, 1]));
-        queue.set(2, key(0.0, 0.0, 2.0, [0, 1]));
-        queue.set(3, key(0.0, 0.0, 1.0, [9, 3]));
-        queue.set(4, key(0.0, 0.0, 1.0, [3, 8]));
-        queue.set(5, key(0.0, 0.0, 1.0, [7, 2]));
+        let entries = [
+            rated(0, [1.0, 0.0], 0.0, [0, 1]),
+            rated(1, [0.0, 1.0], 0.0, [0, 1]),
+            rated(2, [0.0, 0.0], 2.0, [0, 1]),
+            rated(3, [0.0, 0.0], 1.0, [9, 3]),
+            rated(4, [0.0, 0.0], 1.0, [3, 8]),
+            rated(5, [0.0, 0.0], 1.0, [7, 2]),
+        ];
+        let mut queue = EdgeQueue::new(vec![[0, 1]; 6], true, |edge, _| entries[edge as usize]);
         assert_eq!(drain(&mut queue), [5, 4, 3, 2, 1, 0]);
     }
 
@@ -244,7 +245,10 @@ mod tests {
         let ends: Vec<[u32; 2]> = (0..count).map(|e| [e, e + 1]).collect();
         let mut expected: Vec<Option<u64>> = (0..count).map(|_| Some(stream.next(50))).collect();
         let start = expected.clone();
-        let mut queue = EdgeQueue::new(ends, false, |[e, _]| (0.0, start[e as usize].map(|c| [c as f64, 0.0])));
+        let mut queue = EdgeQueue::new(ends, false, |edge, ends| {
+            let costs = start[edge as usize].map(|c| [c as f64, 0.0]);
+            Rated { edge, ends, length_squared: 0.0, costs }
+        });
         for _ in 0..5000 {
             let edge = stream.next(count.into()) as u32;
             match stream.next(4) {
@@ -259,7 +263,7 @@ mod tests {
                 }
                 _ => {
                     let cost = stream.next(50);
-                    queue.set(edge, key(cost as f64, 0.0, 0.0, [edge, edge + 1]));
+                    queue.place(&rated(edge, [cost as f64, 0.0], 0.0, [edge, edge + 1]));
                     expected[edge as usize] = Some(cost);
                 }
             }
