@@ -153,3 +153,46 @@ pub fn find_root(parent: &mut [u32], mut vertex: u32) -> u32 {
     }
     vertex
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use glam::DVec3;
+
+    use super::*;
+
+    fn counts(vertex_count: usize, triangles: &[[u32; 3]]) -> TopologyCounts {
+        let mesh = TriMesh::new(vec![DVec3::ZERO; vertex_count], triangles.to_vec()).unwrap();
+        let lists = CornerLists::of(&mesh);
+        TopologyCounts::of(&mesh, &lists, &Edges::of(&mesh, &lists))
+    }
+
+    #[test]
+    fn tetrahedron_beside_an_unused_vertex_is_closed() {
+        let counts = counts(5, &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]);
+        assert_eq!((counts.used_vertices, counts.edges, counts.components), (4, 6, 1));
+        assert_eq!((counts.boundary_edges, counts.non_manifold_edges, counts.euler_characteristic), (0, 0, 2));
+    }
+
+    #[test]
+    fn three_wings_on_one_edge_and_a_triangle_apart() {
+        let counts = counts(8, &[[0, 1, 2], [1, 0, 3], [0, 1, 4], [5, 6, 7]]);
+        assert_eq!((counts.boundary_edges, counts.non_manifold_edges, counts.components), (9, 1, 2));
+    }
+
+    #[test]
+    fn edges_lie_opposite_their_corners() {
+        let triangles = vec![[4, 2, 0], [0, 2, 1]];
+        let mesh = TriMesh::new(vec![DVec3::ZERO; 5], triangles.clone()).unwrap();
+        let edges = Edges::of(&mesh, &CornerLists::of(&mesh));
+        for (triangle, opposite) in triangles.iter().zip(&edges.of_triangle) {
+            for k in 0..3 {
+                let [a, b] = edges.ends[opposite[k] as usize];
+                let mut ends = [triangle[(k + 1) % 3], triangle[(k + 2) % 3]];
+                ends.sort_unstable();
+                assert_eq!([a, b], ends);
+            }
+        }
+    }
+}

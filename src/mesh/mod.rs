@@ -5,13 +5,14 @@
 //! one triangle. What a file holds beyond that is set aside, and counted, by [`TriMesh::from_triangles`].
 
 pub mod adjacency;
+mod part;
 mod rings;
 pub mod shapes;
-mod subset;
 mod weld;
 
+pub(crate) use part::number_marked;
+pub use part::{Remainder, compose_maps};
 pub use rings::VertexTriangles;
-pub use subset::Subset;
 pub use weld::{Welder, weld};
 
 use glam::DVec3;

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::error::{Error, Result};
 use crate::io::{Format, ReadOptions};
-use crate::mesh::{Subset, TriMesh};
+use crate::mesh::{Remainder, TriMesh, compose_maps};
 use crate::pipeline::Observer;
 use crate::simplify::{Level, SimplifyOptions, Stop, Target, TopologyChange, simplify};
 use crate::visibility::{Hidden, Look, MeasureOptions, importance};
@@ -109,7 +109,8 @@ pub fn simplify_seen(
         return Ok(Simplified { levels: simplify(&mesh, None, &options, observer)?, hidden_deleted: 0 });
     };
     let weights = importance(&look.visibility, request.hidden, request.visibility_power)?;
-    let seen = look.hidden.iter().any(|&h| h).then(|| mesh.subset(|t| !look.hidden[t])).flatten();
+    let removes = look.hidden.iter().any(|&h| h);
+    let seen = if removes { mesh.without_triangles(&look.hidden)? } else { None };
     let Some(seen) = seen else {
         return Ok(Simplified { levels: simplify(&mesh, Some(&weights), &options, observer)?, hidden_deleted: 0 });
     };
@@ -124,12 +125,9 @@ pub fn simplify_seen(
 }
 
 /// Puts the way from the whole mesh to its seen part before the maps of a level.
-fn start_from_whole(level: &mut Level, seen: &Subset) {
-    let through = |first: &[Option<u32>], then: &[Option<u32>]| -> Vec<Option<u32>> {
-        first.iter().map(|&id| id.and_then(|id| then[id as usize])).collect()
-    };
-    level.vertex_map = through(&seen.vertex_map, &level.vertex_map);
-    level.triangle_map = through(&seen.triangle_map, &level.triangle_map);
+fn start_from_whole(level: &mut Level, seen: &Remainder) {
+    level.vertex_map = compose_maps(&seen.vertex_map, &level.vertex_map);
+    level.triangle_map = compose_maps(&seen.triangle_map, &level.triangle_map);
 }
 
 /// Result of [`super::run_simplify`].

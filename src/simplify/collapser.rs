@@ -1,14 +1,13 @@
 //! The driver: cheapest edge first, until a target is met.
 
-use super::frame::Frame;
+use super::Stop;
 use super::guards::Guards;
 use super::metric::{Candidate, Metric};
-use super::queue::{Edge, EdgeQueue, Key};
+use super::queue::{EdgeQueue, Rated};
 use super::ring::Ring;
 use super::surface::{Corner, Surface};
-use super::{Boundary, SimplifyOptions, Stop};
 use crate::error::Result;
-use crate::mesh::adjacency::{Edges, NONE};
+use crate::mesh::adjacency::NONE;
 use crate::progress::Progress;
 
 /// Attempts between two looks at whether to stop.
@@ -17,21 +16,37 @@ const ATTEMPTS_PER_CHECK: u64 = 1000;
 /// A surface that shrinks by edge collapses in the order that a metric gives.
 #[derive(Debug)]
 pub struct EdgeCollapser<M> {
-    surface: Surface,
+    state: State,
     metric: M,
-    guards: Guards,
+    limits: Limits,
     queue: EdgeQueue,
     ring: Ring,
-    vertices: Vertices,
     /// Scratch: edges about to return to the queue.
-    waiting: Vec<u32>,
-    /// Largest mean square distance allowed, in unit-sphere units squared.
-    max_mean_square: f64,
+    rated: Vec<Rated>,
     withheld_by_error: bool,
-    tally: Tally,
 }
 
-/// What a run has come to so far.
+/// Which collapses are allowed.
+#[derive(Debug, Clone, Copy)]
+pub struct Limits {
+    /// What must hold around the edge.
+    pub guards: Guards,
+    /// Largest mean square distance, in unit-sphere units squared.
+    pub max_mean_square: f64,
+}
+
+/// What a run has come to so far: all that a level of detail is made of.
+#[derive(Debug)]
+pub struct State {
+    /// Triangles and positions.
+    pub surface: Surface,
+    /// What became of each vertex.
+    pub vertices: Vertices,
+    /// Sums over the collapses done.
+    pub tally: Tally,
+}
+
+/// Sums over the collapses done.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Tally {
     /// Largest mean square distance of a collapse, in unit-sphere units squared.
@@ -54,12 +69,8 @@ pub struct Vertices {
 }
 
 impl Vertices {
-    fn new(edges: &Edges, count: usize, boundary: Boundary) -> Self {
-        let mut locked = vec![false; count];
-        if boundary == Boundary::Locked {
-            let boundary = edges.ends.iter().zip(&edges.triangle_counts).filter(|&(_, &n)| n == 1);
-            boundary.flat_map(|(ends, _)| ends).for_each(|&v| locked[v as usize] = true);
-        }
+    fn new(locked: Vec<bool>) -> Self {
+        let count = locked.len();
         Self { parent: (0..count as u32).collect(), moved: vec![false; count], locked, has_refused: vec![false; count] }
     }
 
@@ -75,40 +86,37 @@ impl Vertices {
 }
 
 impl<M: Metric> EdgeCollapser<M> {
-    /// A collapser of `surface`, with all edges in the queue.
-    pub fn new(surface: Surface, metric: M, edges: &Edges, frame: &Frame, options: &SimplifyOptions) -> Self {
+    /// A collapser of `surface`, whose edges are `edges`, with all of them in the queue.
+    pub fn new(surface: Surface, metric: M, edges: Vec<[u32; 2]>, locked: Vec<bool>, limits: Limits) -> Self {
         let count = surface.positions.len();
-        let vertices = Vertices::new(edges, count, options.boundary);
-        let queue = EdgeQueue::new(&edges.ends, metric.has_second_cost(), |ends| {
-            let key = assess(&surface, &metric, &vertices, ends).map(|c| key_of(&surface, ends, &c));
-            (record(&surface, ends), key)
+        let vertices = Vertices::new(locked);
+        let queue = EdgeQueue::new(edges, metric.has_second_cost(), |edge, ends| {
+            rate(&surface, &metric, &vertices, edge, ends)
         });
-        let max = options.max_error.map_or(f64::INFINITY, |e| e / frame.radius);
         Self {
-            surface,
+            state: State { surface, vertices, tally: Tally::default() },
             metric,
-            guards: Guards::new(options),
+            limits,
             queue,
             ring: Ring::new(count),
-            vertices,
-            waiting: Vec::new(),
-            max_mean_square: max * max,
+            rated: Vec::new(),
             withheld_by_error: false,
-            tally: Tally::default(),
         }
     }
 
     /// Collapses until at most `target` triangles are left, or no collapse is allowed any more.
     ///
+    /// `floor`, at most `target`, is where the whole of the work ends; progress is reported toward it.
+    ///
     /// # Errors
     /// [`crate::Error::Cancelled`].
-    pub fn run(&mut self, target: usize, progress: &dyn Progress, total: u64) -> Result<Stop> {
-        let input = self.surface.triangles.len() as u64;
+    pub fn run(&mut self, target: usize, floor: usize, progress: &dyn Progress) -> Result<Stop> {
+        progress.check()?;
         let mut attempts = 0;
-        while self.surface.alive > target {
+        while self.state.surface.alive > target {
             if attempts % ATTEMPTS_PER_CHECK == 0 {
                 progress.check()?;
-                progress.report("simplify", input - self.surface.alive as u64, total);
+                self.report(floor, progress);
             }
             attempts += 1;
             let Some(edge) = self.queue.pop() else {
@@ -116,44 +124,52 @@ impl<M: Metric> EdgeCollapser<M> {
             };
             self.attempt(edge);
         }
+        self.report(floor, progress);
         Ok(Stop::Target)
     }
 
-    /// The surface as it is now.
-    pub fn surface(&self) -> &Surface {
-        &self.surface
-    }
-
-    /// The vertices as they are now.
-    pub fn vertices(&self) -> &Vertices {
-        &self.vertices
+    fn report(&self, floor: usize, progress: &dyn Progress) {
+        let Surface { triangles, alive, .. } = &self.state.surface;
+        let total = triangles.len().saturating_sub(floor);
+        progress.report("simplify", (triangles.len() - alive).min(total) as u64, total as u64);
     }
 
     /// What the run has come to so far.
-    pub fn tally(&self) -> Tally {
-        self.tally
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// What the run has come to, without what was needed to go on.
+    pub fn into_state(self) -> State {
+        self.state
     }
 
     /// Collapses the edge if that is allowed.
     fn attempt(&mut self, edge: u32) {
         let ends = self.queue.ends(edge);
-        self.ring.gather(&self.surface, ends);
+        self.ring.gather(&self.state.surface, ends);
         // An edge whose last triangles were cancelled is met here once more.
         if self.ring.on_edge.is_empty() {
             return;
         }
-        let Some(candidate) = assess(&self.surface, &self.metric, &self.vertices, ends) else {
+        let Some(candidate) = assess(&self.state.surface, &self.metric, &self.state.vertices, ends) else {
             return;
         };
-        if candidate.mean_square > self.max_mean_square {
+        if candidate.mean_square > self.limits.max_mean_square {
             self.withheld_by_error = true;
             return;
         }
         let is_free = candidate.cost == 0.0;
-        if self.guards.allow(&self.surface, &self.ring, &self.vertices.locked, candidate.position, is_free) {
+        if self.limits.guards.allow(
+            &self.state.surface,
+            &self.ring,
+            &self.state.vertices.locked,
+            candidate.position,
+            is_free,
+        ) {
             self.collapse(&candidate);
         } else {
-            ends.iter().for_each(|&v| self.vertices.has_refused[v as usize] = true);
+            ends.iter().for_each(|&v| self.state.vertices.has_refused[v as usize] = true);
         }
     }
 
@@ -163,10 +179,10 @@ impl<M: Metric> EdgeCollapser<M> {
         self.retire_edges(1 - kept_side);
         self.join_triangles(kept_side);
         self.move_vertex(kept, candidate);
-        self.vertices.parent[gone as usize] = kept;
+        self.state.vertices.parent[gone as usize] = kept;
         self.metric.merge(gone, kept);
-        self.tally.mean_square = self.tally.mean_square.max(candidate.mean_square);
-        self.tally.cancelled_pairs += self.ring.cancelled_pairs;
+        self.state.tally.mean_square = self.state.tally.mean_square.max(candidate.mean_square);
+        self.state.tally.cancelled_pairs += self.ring.cancelled_pairs;
         self.requeue_edges(kept, kept_side);
         self.retry_refused(kept);
     }
@@ -174,12 +190,12 @@ impl<M: Metric> EdgeCollapser<M> {
     /// The end whose number lives on: one that keeps its position, else the smaller.
     fn side_that_stays(&self, candidate: &Candidate) -> usize {
         let ends = self.ring.ends;
-        let stays = |side: usize| self.surface.positions[ends[side] as usize] == candidate.position;
+        let stays = |side: usize| self.state.surface.positions[ends[side] as usize] == candidate.position;
         match [stays(0), stays(1)] {
             [true, false] => 0,
             [false, true] => 1,
-            [true, true] if self.vertices.locked[ends[0] as usize] => 0,
-            [true, true] if self.vertices.locked[ends[1] as usize] => 1,
+            [true, true] if self.state.vertices.locked[ends[0] as usize] => 0,
+            [true, true] if self.state.vertices.locked[ends[1] as usize] => 1,
             _ => usize::from(ends[1] < ends[0]),
         }
     }
@@ -193,7 +209,7 @@ impl<M: Metric> EdgeCollapser<M> {
 
     /// Gives the triangles of the vanishing end to the other one, without those that vanish.
     fn join_triangles(&mut self, kept_side: usize) {
-        let Self { surface, ring, .. } = self;
+        let Self { state: State { surface, .. }, ring, .. } = self;
         let [kept, gone] = [ring.ends[kept_side], ring.ends[1 - kept_side]];
         for &triangle in ring.on_edge.iter().chain(&ring.covered) {
             surface.remove_triangle(triangle, ring.ends);
@@ -209,52 +225,49 @@ impl<M: Metric> EdgeCollapser<M> {
     }
 
     fn move_vertex(&mut self, kept: u32, candidate: &Candidate) {
-        let position = &mut self.surface.positions[kept as usize];
+        let position = &mut self.state.surface.positions[kept as usize];
         if *position != candidate.position {
             *position = candidate.position;
-            self.vertices.moved[kept as usize] = true;
+            self.state.vertices.moved[kept as usize] = true;
         }
     }
 
     /// Gives every edge at the new vertex its new cost.
+    ///
+    /// All are rated before the first moves in the queue: the processor can then fetch the next quadrics while it
+    /// works on the last, which branches in the queue would keep it from.
     fn requeue_edges(&mut self, kept: u32, kept_side: usize) {
-        for i in 0..self.ring.neighbours.len() {
-            let neighbour = self.ring.neighbours[i];
+        let Self { state: State { surface, vertices, .. }, metric, queue, ring, rated, .. } = self;
+        rated.clear();
+        rated.extend(ring.neighbours.iter().map(|neighbour| {
             let kept_edge = neighbour.edges[kept_side];
             let edge = if kept_edge == NONE { neighbour.edges[1 - kept_side] } else { kept_edge };
-            self.requeue(edge, [kept, neighbour.vertex]);
-        }
-    }
-
-    fn requeue(&mut self, edge: u32, ends: [u32; 2]) {
-        match assess(&self.surface, &self.metric, &self.vertices, ends) {
-            Some(candidate) => self.queue.set(edge, key_of(&self.surface, ends, &candidate)),
-            None => self.queue.set_aside(edge, record(&self.surface, ends)),
-        }
+            rate(surface, metric, vertices, edge, [kept, neighbour.vertex])
+        }));
+        rated.iter().for_each(|rated| queue.place(rated));
     }
 
     /// Puts refused edges at the neighbours of `kept` back into the queue: their surroundings have changed.
     fn retry_refused(&mut self, kept: u32) {
-        self.vertices.has_refused[kept as usize] = false;
+        self.state.vertices.has_refused[kept as usize] = false;
         for i in 0..self.ring.neighbours.len() {
             let vertex = self.ring.neighbours[i].vertex;
-            if std::mem::take(&mut self.vertices.has_refused[vertex as usize]) {
+            if std::mem::take(&mut self.state.vertices.has_refused[vertex as usize]) {
                 self.retry_around(vertex);
             }
         }
     }
 
     fn retry_around(&mut self, vertex: u32) {
-        self.waiting.clear();
-        for corner in self.surface.corners(vertex) {
-            let triangle = self.surface.triangle(corner.triangle);
-            let [k1, k2] = corner.others();
-            self.waiting.extend([triangle.edges[k1], triangle.edges[k2]].iter().filter(|&&e| !self.queue.contains(e)));
+        let Self { state: State { surface, vertices, .. }, metric, queue, rated, .. } = self;
+        rated.clear();
+        for corner in surface.corners(vertex) {
+            let triangle = surface.triangle(corner.triangle);
+            let edges = corner.others().map(|k| triangle.edges[k]);
+            let waiting = edges.into_iter().filter(|&edge| !queue.contains(edge));
+            rated.extend(waiting.map(|edge| rate(surface, metric, vertices, edge, queue.ends(edge))));
         }
-        for i in 0..self.waiting.len() {
-            let edge = self.waiting[i];
-            self.requeue(edge, self.queue.ends(edge));
-        }
+        rated.iter().for_each(|rated| queue.place(rated));
     }
 }
 
@@ -270,16 +283,13 @@ fn adopt_edges(surface: &mut Surface, ring: &Ring, corner: Corner, kept_side: us
     }
 }
 
-/// What would become of the edge, `None` if both ends are locked.
+/// What would become of the edge between `ends`, `None` if both are locked.
 fn assess<M: Metric>(surface: &Surface, metric: &M, vertices: &Vertices, ends: [u32; 2]) -> Option<Candidate> {
     vertices.pinned(ends).map(|pinned| metric.candidate(surface, ends, pinned))
 }
 
-fn key_of(surface: &Surface, ends: [u32; 2], candidate: &Candidate) -> Key {
-    Key { cost: candidate.cost, second_cost: candidate.second_cost, edge: record(surface, ends) }
-}
-
-fn record(surface: &Surface, ends: [u32; 2]) -> Edge {
+fn rate<M: Metric>(surface: &Surface, metric: &M, vertices: &Vertices, edge: u32, ends: [u32; 2]) -> Rated {
     let [u, v] = ends.map(|v| surface.positions[v as usize]);
-    Edge { ends, length_squared: u.distance_squared(v) as f32 }
+    let costs = assess(surface, metric, vertices, ends).map(|c| [c.cost, c.second_cost]);
+    Rated { edge, ends, length_squared: u.distance_squared(v) as f32, costs }
 }

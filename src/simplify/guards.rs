@@ -42,13 +42,18 @@ impl Guards {
         self.topology == Topology::Free || (links_meet_only_at_edge(ring) && boundary_links_meet_only_at_edge(ring))
     }
 
-    /// Whether no locked vertex loses its last triangle: only covered triangles can take it away.
+    /// Whether no locked vertex loses its last triangle.
     fn keeps_locked_vertices(&self, ring: &Ring, surface: &Surface, locked: &[bool]) -> bool {
-        if !self.keeps_boundary || ring.covered.is_empty() {
+        if !self.keeps_boundary {
             return true;
         }
-        let touched = ring.covered.iter().flat_map(|&t| surface.triangle(t).vertices);
-        !touched.into_iter().any(|v| locked[v as usize])
+        let is_removed = |t: u32| ring.on_edge.contains(&t) || ring.covered.contains(&t);
+        let touched = ring.on_edge.iter().chain(&ring.covered).flat_map(|&t| surface.triangle(t).vertices);
+        touched.filter(|&v| locked[v as usize]).all(|v| {
+            let is_end = ring.ends.contains(&v);
+            (is_end && ring.lasting().next().is_some())
+                || (!is_end && surface.corners(v).any(|corner| !is_removed(corner.triangle)))
+        })
     }
 
     fn keeps_valence(&self, ring: &Ring) -> bool {
@@ -96,8 +101,7 @@ fn compactness([a, b, c]: [DVec3; 3]) -> f64 {
 ///
 /// Source: Dey, Edelsbrunner, Guha & Nekhayev 1999.
 fn links_meet_only_at_edge(ring: &Ring) -> bool {
-    let common = ring.neighbours.iter().filter(|n| n.is_common()).count();
-    common == ring.on_edge.len() && ring.covered.is_empty()
+    ring.covered.is_empty() && ring.neighbours.iter().all(|n| n.wing_count == u32::from(n.is_common()))
 }
 
 /// The same with a virtual vertex that makes a triangle with every boundary edge.

@@ -1,12 +1,11 @@
 //! From the shrunken surface back to a mesh, with maps from old numbers to new ones.
 
-use super::collapser::EdgeCollapser;
+use super::collapser::State;
 use super::frame::Frame;
-use super::metric::Metric;
 use super::{Level, Stop, TopologyChange};
 use crate::error::{Error, Result};
-use crate::mesh::TriMesh;
 use crate::mesh::adjacency::{CornerLists, Edges, TopologyCounts, find_root};
+use crate::mesh::{TriMesh, number_marked};
 
 /// What levels are measured against.
 #[derive(Debug, Clone, Copy)]
@@ -22,14 +21,9 @@ pub struct Origin<'a> {
 /// The level of detail that `collapser` has reached.
 ///
 /// Vertices and triangles keep their order; a vertex that never moved keeps its coordinates to the last bit.
-pub fn level_of<M: Metric>(
-    collapser: &EdgeCollapser<M>,
-    origin: &Origin<'_>,
-    target: Option<usize>,
-    stop: Stop,
-) -> Result<Level> {
-    let (surface, vertices) = (collapser.surface(), collapser.vertices());
-    let numbers = number_the_used(origin.mesh.vertex_count(), |v| surface.is_used(v));
+pub fn level_of(state: &State, origin: &Origin<'_>, target: Option<usize>, stop: Stop) -> Result<Level> {
+    let State { surface, vertices, tally } = state;
+    let numbers = number_marked(origin.mesh.vertex_count(), |v| surface.is_used(v as u32));
     let position = |v: usize| {
         if vertices.moved[v] { origin.frame.to_model(surface.positions[v]) } else { origin.mesh.positions()[v] }
     };
@@ -42,24 +36,12 @@ pub fn level_of<M: Metric>(
     Ok(Level {
         target,
         stop,
-        error: collapser.tally().mean_square.sqrt() * origin.frame.radius,
-        topology: change(&origin.topology, &counts(&mesh), collapser.tally().cancelled_pairs),
+        error: tally.mean_square.sqrt() * origin.frame.radius,
+        topology: change(&origin.topology, &counts(&mesh), tally.cancelled_pairs),
         mesh,
         vertex_map: (0..parent.len() as u32).map(|v| numbers[find_root(&mut parent, v) as usize]).collect(),
-        triangle_map: number_the_used(surface.triangles.len(), |t| surface.triangle(t).is_alive()),
+        triangle_map: number_marked(surface.triangles.len(), |t| surface.triangles[t].is_alive()),
     })
-}
-
-/// Counts up over those that `is_used`, `None` for the others.
-fn number_the_used(count: usize, is_used: impl Fn(u32) -> bool) -> Vec<Option<u32>> {
-    let mut next = 0;
-    (0..count as u32)
-        .map(|item| {
-            let number = is_used(item).then_some(next);
-            next += u32::from(number.is_some());
-            number
-        })
-        .collect()
 }
 
 fn counts(mesh: &TriMesh) -> TopologyCounts {

@@ -8,22 +8,23 @@ mod collapser;
 mod frame;
 mod guards;
 mod level;
-pub mod metric;
+mod metric;
 mod options;
 mod placement;
-pub mod quadric;
+mod quadric;
 mod queue;
 mod ring;
 mod surface;
 
-pub use collapser::EdgeCollapser;
 pub use options::SimplifyOptions;
 
 use crate::error::{Error, Result};
 use crate::mesh::TriMesh;
 use crate::mesh::adjacency::{CornerLists, Edges, TopologyCounts};
 use crate::progress::Progress;
+use collapser::{EdgeCollapser, Limits};
 use frame::Frame;
+use guards::Guards;
 use level::{Origin, level_of};
 use metric::QuadricMetric;
 use surface::Surface;
@@ -136,22 +137,44 @@ pub fn simplify(
     let frame = Frame::of(mesh, &lists);
     let origin = Origin { mesh, frame, topology: TopologyCounts::of(mesh, &lists, &edges) };
 
-    // Prepare the queue.
+    // Prepare quadrics and queue, and let go of what they were made from.
+    progress.check()?;
     let surface = Surface::new(mesh, &frame, lists, &edges);
     let metric = QuadricMetric::new(&surface, &edges, importance, options);
-    let mut collapser = EdgeCollapser::new(surface, metric, &edges, &frame, options);
-    drop(edges);
+    let locked = locked_vertices(&edges, mesh.vertex_count(), options.boundary);
+    let ends = edges.ends;
+    drop((edges.of_triangle, edges.triangle_counts));
+    let mut collapser = EdgeCollapser::new(surface, metric, ends, locked, limits(options, &frame));
 
-    // Collapse from level to level.
-    let last = targets.last().copied().unwrap_or(1);
-    let total = mesh.triangle_count().saturating_sub(last) as u64;
-    let mut levels = Vec::with_capacity(targets.len().max(1));
-    for target in targets.iter().copied().map(Some).chain(targets.is_empty().then_some(None)) {
-        let stop = collapser.run(target.unwrap_or(1), progress, total)?;
-        levels.push(level_of(&collapser, &origin, target, stop)?);
+    // Collapse from level to level; the last is made after what is needed to go on has been freed.
+    let (last, before) = match targets.split_last() {
+        Some((&last, before)) => (Some(last), before),
+        None => (None, &[][..]),
+    };
+    let floor = last.unwrap_or(1);
+    let mut levels = Vec::with_capacity(before.len() + 1);
+    for &target in before {
+        let stop = collapser.run(target, floor, progress)?;
+        levels.push(level_of(collapser.state(), &origin, Some(target), stop)?);
     }
-    progress.report("simplify", total, total);
+    let stop = collapser.run(floor, floor, progress)?;
+    levels.push(level_of(&collapser.into_state(), &origin, last, stop)?);
     Ok(levels)
+}
+
+fn limits(options: &SimplifyOptions, frame: &Frame) -> Limits {
+    let max = options.max_error.map_or(f64::INFINITY, |error| error / frame.radius);
+    Limits { guards: Guards::new(options), max_mean_square: max * max }
+}
+
+/// Marks the vertices that must stay where they are.
+fn locked_vertices(edges: &Edges, vertex_count: usize, boundary: Boundary) -> Vec<bool> {
+    let mut locked = vec![false; vertex_count];
+    if boundary == Boundary::Locked {
+        let on_boundary = edges.ends.iter().zip(&edges.triangle_counts).filter(|&(_, &count)| count == 1);
+        on_boundary.flat_map(|(ends, _)| ends).for_each(|&v| locked[v as usize] = true);
+    }
+    locked
 }
 
 /// Largest importance: sums of larger ones could overflow.

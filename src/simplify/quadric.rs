@@ -70,3 +70,33 @@ impl Quadric {
         self.a[0] + self.a[3] + self.a[5]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rounding of a few products and sums of numbers near 1.
+    const ROUNDING: f64 = 1e-14;
+
+    #[test]
+    fn planted_planes_give_their_weighted_squared_distances() {
+        // Planes x = 1, y = 2, and the one through the origin with normal (2, 2, 1) / 3.
+        let planes =
+            [(DVec3::X, -1.0, 2.0), (DVec3::Y, -2.0, 3.0), (DVec3::new(2.0 / 3.0, 2.0 / 3.0, 1.0 / 3.0), 0.0, 0.5)];
+        let mut q = Quadric::default();
+        planes.iter().for_each(|&(n, d, w)| q.add(&Quadric::of_plane(n, d, w)));
+        for x in [DVec3::ZERO, DVec3::new(1.0, 2.0, -6.0), DVec3::new(-0.3, 0.7, 0.2)] {
+            let expected: f64 = planes.iter().map(|(n, d, w)| w * (n.dot(x) + d).powi(2)).sum();
+            assert!((q.value(x) - expected).abs() < 100.0 * ROUNDING, "{} for {expected}", q.value(x));
+        }
+        assert!((q.total_weight() - 5.5).abs() < ROUNDING);
+    }
+
+    #[test]
+    fn scaling_and_adding_are_those_of_the_weights() {
+        let q = Quadric::of_plane(DVec3::Z, -0.5, 3.0);
+        assert_eq!(q.scaled(2.0), Quadric::of_plane(DVec3::Z, -0.5, 6.0));
+        assert_eq!(q.plus(&q), q.scaled(2.0));
+        assert_eq!(q.scaled(1.0), q);
+    }
+}

@@ -5,61 +5,49 @@ use crate::mesh::adjacency::NONE;
 /// Children of a heap node. Four halve the depth against two, and their costs share a cache line.
 const ARITY: usize = 4;
 
-/// What orders an edge, beside its cost.
+/// An edge and what it is sorted by.
 #[derive(Debug, Clone, Copy)]
-pub struct Edge {
-    /// Its two vertices.
+pub struct Rated {
+    /// The edge.
+    pub edge: u32,
+    /// Its vertices; smaller, then larger are the last criteria.
     pub ends: [u32; 2],
-    /// Its squared length in unit-sphere coordinates, rounded so that lengths equal but for rounding are equal.
+    /// Third criterion: its squared length, rounded so that lengths equal but for rounding are equal.
     pub length_squared: f32,
-}
-
-/// A key in the making: what [`EdgeQueue::set`] puts an edge under.
-#[derive(Debug, Clone, Copy)]
-pub struct Key {
-    /// First criterion.
-    pub cost: f64,
-    /// Second criterion, ignored by a queue without second costs.
-    pub second_cost: f64,
-    /// The further criteria: length, smaller vertex, larger vertex.
-    pub edge: Edge,
+    /// First and second criterion; `None` for an edge that may not collapse and stays out of the queue.
+    pub costs: Option<[f64; 2]>,
 }
 
 /// An indexed heap of edges by (cost, second cost, length, smaller vertex, larger vertex), all ascending.
 ///
-/// The key of an edge changes only inside [`EdgeQueue::set`], so that the heap stays in order between any two calls.
+/// The key of an edge changes only inside [`EdgeQueue::place`], so that the heap stays in order between any two calls.
 #[derive(Debug)]
 pub struct EdgeQueue {
     costs: Vec<f64>,
     items: Vec<u32>,
-    place: Vec<u32>,
-    edges: Vec<Edge>,
+    /// For each edge its node in the heap, [`NONE`] for an edge outside.
+    nodes: Vec<u32>,
+    ends: Vec<[u32; 2]>,
+    lengths_squared: Vec<f32>,
     second_costs: Vec<f64>,
 }
 
 impl EdgeQueue {
-    /// A queue of these edges by their keys, in linear time. `None` keeps an edge out for now.
-    ///
-    /// Second costs are stored only if `has_second_cost`.
-    pub fn new(ends: &[[u32; 2]], has_second_cost: bool, mut key: impl FnMut([u32; 2]) -> (Edge, Option<Key>)) -> Self {
+    /// A queue of the edges between these ends, in linear time. Second costs are stored only if `has_second_cost`.
+    pub fn new(ends: Vec<[u32; 2]>, has_second_cost: bool, mut rate: impl FnMut(u32, [u32; 2]) -> Rated) -> Self {
         let count = ends.len();
         let mut queue = Self {
             costs: Vec::with_capacity(count),
             items: Vec::with_capacity(count),
-            place: vec![NONE; count],
-            edges: Vec::with_capacity(count),
+            nodes: vec![NONE; count],
+            ends,
+            lengths_squared: vec![0.0; count],
             second_costs: vec![0.0; if has_second_cost { count } else { 0 }],
         };
-        for (id, &ends) in ends.iter().enumerate() {
-            let (edge, key) = key(ends);
-            queue.edges.push(edge);
-            if let Some(key) = key {
-                queue.place[id] = queue.items.len() as u32;
-                queue.items.push(id as u32);
-                queue.costs.push(key.cost);
-                if has_second_cost {
-                    queue.second_costs[id] = key.second_cost;
-                }
+        for edge in 0..count {
+            let rated = rate(edge as u32, queue.ends[edge]);
+            if let Some(cost) = queue.record(&rated) {
+                queue.nodes[edge] = queue.append(cost, rated.edge) as u32;
             }
         }
         for node in (0..queue.items.len().div_ceil(ARITY)).rev() {
@@ -70,12 +58,12 @@ impl EdgeQueue {
 
     /// The two vertices of an edge.
     pub fn ends(&self, edge: u32) -> [u32; 2] {
-        self.edges[edge as usize].ends
+        self.ends[edge as usize]
     }
 
     /// Whether the edge waits in the queue.
     pub fn contains(&self, edge: u32) -> bool {
-        self.place[edge as usize] != NONE
+        self.nodes[edge as usize] != NONE
     }
 
     /// Takes the first edge out.
@@ -87,7 +75,7 @@ impl EdgeQueue {
 
     /// Takes an edge out, if it is there.
     pub fn remove(&mut self, edge: u32) {
-        let node = std::mem::replace(&mut self.place[edge as usize], NONE) as usize;
+        let node = std::mem::replace(&mut self.nodes[edge as usize], NONE) as usize;
         if node >= self.items.len() {
             return;
         }
@@ -100,26 +88,36 @@ impl EdgeQueue {
         }
     }
 
-    /// Puts an edge under a new key, whether or not it was in the queue.
-    pub fn set(&mut self, edge: u32, key: Key) {
-        self.edges[edge as usize] = key.edge;
-        if let Some(second) = self.second_costs.get_mut(edge as usize) {
-            *second = key.second_cost;
-        }
-        let mut node = self.place[edge as usize] as usize;
+    /// Puts an edge where its new costs belong, whether or not it was in the queue.
+    pub fn place(&mut self, rated: &Rated) {
+        let edge = rated.edge;
+        let Some(cost) = self.record(rated) else {
+            // Where it lies in the queue does not matter for taking it out, as the last entry fills its node.
+            self.remove(edge);
+            return;
+        };
+        let mut node = self.nodes[edge as usize] as usize;
         if node >= self.items.len() {
-            node = self.items.len();
-            self.items.push(edge);
-            self.costs.push(key.cost);
+            node = self.append(cost, edge);
         }
-        self.put(node, key.cost, edge);
+        self.put(node, cost, edge);
         self.restore(node);
     }
 
-    /// Takes an edge out and gives it new ends, for an edge that may not collapse.
-    pub fn set_aside(&mut self, edge: u32, record: Edge) {
-        self.remove(edge);
-        self.edges[edge as usize] = record;
+    /// Takes over all but the first cost, which it returns.
+    fn record(&mut self, rated: &Rated) -> Option<f64> {
+        let edge = rated.edge as usize;
+        self.ends[edge] = rated.ends;
+        self.lengths_squared[edge] = rated.length_squared;
+        let [cost, second_cost] = rated.costs?;
+        self.second_costs.get_mut(edge).into_iter().for_each(|second| *second = second_cost);
+        Some(cost)
+    }
+
+    fn append(&mut self, cost: f64, item: u32) -> usize {
+        self.costs.push(cost);
+        self.items.push(item);
+        self.items.len() - 1
     }
 
     fn restore(&mut self, node: usize) {
@@ -131,7 +129,7 @@ impl EdgeQueue {
     fn put(&mut self, node: usize, cost: f64, item: u32) {
         self.costs[node] = cost;
         self.items[node] = item;
-        self.place[item as usize] = node as u32;
+        self.nodes[item as usize] = node as u32;
     }
 
     /// Whether it moved.
@@ -195,11 +193,81 @@ impl EdgeQueue {
         {
             return second_a < second_b;
         }
-        let (a, b) = (&self.edges[a], &self.edges[b]);
-        if a.length_squared != b.length_squared {
-            return a.length_squared < b.length_squared;
+        let (length_a, length_b) = (self.lengths_squared[a], self.lengths_squared[b]);
+        if length_a != length_b {
+            return length_a < length_b;
         }
         let sorted = |[u, v]: [u32; 2]| (u.min(v), u.max(v));
-        sorted(a.ends) < sorted(b.ends)
+        sorted(self.ends[a]) < sorted(self.ends[b])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A stream of numbers that look random, the same every time.
+    struct Stream(u64);
+
+    impl Stream {
+        fn next(&mut self, below: u64) -> u64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 33) % below
+        }
+    }
+
+    fn rated(edge: u32, costs: [f64; 2], length_squared: f32, ends: [u32; 2]) -> Rated {
+        Rated { edge, ends, length_squared, costs: Some(costs) }
+    }
+
+    fn drain(queue: &mut EdgeQueue) -> Vec<u32> {
+        std::iter::from_fn(|| queue.pop()).collect()
+    }
+
+    #[test]
+    fn ties_break_by_second_cost_then_length_then_vertices() {
+        let entries = [
+            rated(0, [1.0, 0.0], 0.0, [0, 1]),
+            rated(1, [0.0, 1.0], 0.0, [0, 1]),
+            rated(2, [0.0, 0.0], 2.0, [0, 1]),
+            rated(3, [0.0, 0.0], 1.0, [9, 3]),
+            rated(4, [0.0, 0.0], 1.0, [3, 8]),
+            rated(5, [0.0, 0.0], 1.0, [7, 2]),
+        ];
+        let mut queue = EdgeQueue::new(vec![[0, 1]; 6], true, |edge, _| entries[edge as usize]);
+        assert_eq!(drain(&mut queue), [5, 4, 3, 2, 1, 0]);
+    }
+
+    #[test]
+    fn any_mix_of_operations_leaves_the_smallest_first() {
+        let count = 200;
+        let mut stream = Stream(1);
+        let ends: Vec<[u32; 2]> = (0..count).map(|e| [e, e + 1]).collect();
+        let mut expected: Vec<Option<u64>> = (0..count).map(|_| Some(stream.next(50))).collect();
+        let start = expected.clone();
+        let mut queue = EdgeQueue::new(ends, false, |edge, ends| {
+            let costs = start[edge as usize].map(|c| [c as f64, 0.0]);
+            Rated { edge, ends, length_squared: 0.0, costs }
+        });
+        for _ in 0..5000 {
+            let edge = stream.next(count.into()) as u32;
+            match stream.next(4) {
+                0 => {
+                    queue.remove(edge);
+                    expected[edge as usize] = None;
+                }
+                1 => {
+                    let first = (0..count).filter_map(|e| expected[e as usize].map(|c| (c, e))).min();
+                    assert_eq!(queue.pop(), first.map(|(_, e)| e));
+                    first.into_iter().for_each(|(_, e)| expected[e as usize] = None);
+                }
+                _ => {
+                    let cost = stream.next(50);
+                    queue.place(&rated(edge, [cost as f64, 0.0], 0.0, [edge, edge + 1]));
+                    expected[edge as usize] = Some(cost);
+                }
+            }
+            assert_eq!(queue.contains(edge), expected[edge as usize].is_some());
+        }
     }
 }

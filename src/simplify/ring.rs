@@ -26,6 +26,8 @@ pub struct Neighbour {
     pub edges: [u32; 2],
     /// The triangles on these edges.
     pub triangle_counts: [u32; 2],
+    /// How many triangles on the edge uv have it for their wing.
+    pub wing_count: u32,
 }
 
 impl Neighbour {
@@ -73,9 +75,9 @@ impl Ring {
         self.ends = ends;
         self.on_edge.clear();
         self.neighbours.clear();
-        for side in 0..2 {
+        for (side, end) in ends.into_iter().enumerate() {
             self.survivors[side].clear();
-            for corner in surface.corners(ends[side]) {
+            for corner in surface.corners(end) {
                 self.sort_in(surface, side, corner);
             }
         }
@@ -106,7 +108,8 @@ impl Ring {
         // The edge from the end to one of the two other corners lies opposite the other of them.
         for (to, opposite) in [(k1, k2), (k2, k1)] {
             if triangle.vertices[to] != other_end {
-                self.note(side, triangle.vertices[to], triangle.edges[opposite]);
+                let neighbour = self.note(side, triangle.vertices[to], triangle.edges[opposite]);
+                neighbour.wing_count += u32::from(on_edge && side == 0);
             }
         }
         if !on_edge {
@@ -116,16 +119,18 @@ impl Ring {
         }
     }
 
-    fn note(&mut self, side: usize, vertex: u32, edge: u32) {
+    fn note(&mut self, side: usize, vertex: u32, edge: u32) -> &mut Neighbour {
         let slot = self.slots[vertex as usize] as usize;
         let known = self.neighbours.get(slot).is_some_and(|n| n.vertex == vertex);
         let slot = if known { slot } else { self.neighbours.len() };
         if !known {
             self.slots[vertex as usize] = slot as u32;
-            self.neighbours.push(Neighbour { vertex, edges: [NONE; 2], triangle_counts: [0; 2] });
+            self.neighbours.push(Neighbour { vertex, edges: [NONE; 2], triangle_counts: [0; 2], wing_count: 0 });
         }
-        self.neighbours[slot].edges[side] = edge;
-        self.neighbours[slot].triangle_counts[side] += 1;
+        let neighbour = &mut self.neighbours[slot];
+        neighbour.edges[side] = edge;
+        neighbour.triangle_counts[side] += 1;
+        neighbour
     }
 
     /// Finds the triangles uab and vab (either way round) that become one and the same.

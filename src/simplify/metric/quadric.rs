@@ -20,10 +20,10 @@ const NOISE: f64 = 1e-14;
 #[derive(Debug)]
 pub struct QuadricMetric {
     placement: Placement,
-    /// Q of each vertex.
-    position_quadrics: Vec<Quadric>,
-    /// Q_v of each vertex; `None` where it equals Q.
-    cost_quadrics: Option<Vec<Quadric>>,
+    /// Q of each vertex, or Q and Q_v by turns: side by side they are fetched together.
+    quadrics: Vec<Quadric>,
+    /// Whether Q_v differs from Q.
+    is_weighted: bool,
 }
 
 impl QuadricMetric {
@@ -32,8 +32,8 @@ impl QuadricMetric {
         let count = surface.positions.len();
         let mut metric = Self {
             placement: Placement { max_distance: options.max_placement_distance, regulariser: options.regulariser },
-            position_quadrics: vec![Quadric::default(); count],
-            cost_quadrics: importance.map(|_| vec![Quadric::default(); count]),
+            quadrics: vec![Quadric::default(); if importance.is_some() { 2 * count } else { count }],
+            is_weighted: importance.is_some(),
         };
         let boundary_weight = match options.boundary {
             Boundary::Weight(weight) => weight,
@@ -82,15 +82,27 @@ impl QuadricMetric {
     }
 
     fn add_plane(&mut self, vertices: &[u32], plane: &Quadric, importance: f64) {
+        let weighted = plane.scaled(importance);
         for &v in vertices {
-            self.position_quadrics[v as usize].add(plane);
-        }
-        if let Some(cost) = &mut self.cost_quadrics {
-            let plane = plane.scaled(importance);
-            for &v in vertices {
-                cost[v as usize].add(&plane);
+            match self.of_vertex_mut(v) {
+                [q, q_v] => {
+                    q.add(plane);
+                    q_v.add(&weighted);
+                }
+                all => all.iter_mut().for_each(|q| q.add(plane)),
             }
         }
+    }
+
+    /// Q of a vertex, and Q_v where it differs.
+    fn of_vertex(&self, vertex: u32) -> &[Quadric] {
+        let stride = 1 + usize::from(self.is_weighted);
+        &self.quadrics[stride * vertex as usize..][..stride]
+    }
+
+    fn of_vertex_mut(&mut self, vertex: u32) -> &mut [Quadric] {
+        let stride = 1 + usize::from(self.is_weighted);
+        &mut self.quadrics[stride * vertex as usize..][..stride]
     }
 }
 
@@ -104,29 +116,29 @@ struct PlaneTerms {
 
 impl Metric for QuadricMetric {
     fn has_second_cost(&self) -> bool {
-        self.cost_quadrics.is_some()
+        self.is_weighted
     }
 
     fn candidate(&self, surface: &Surface, ends: [u32; 2], pinned: Option<u32>) -> Candidate {
         let at = |v: u32| surface.positions[v as usize];
-        let [q_u, q_v] = ends.map(|v| &self.position_quadrics[v as usize]);
+        let [of_u, of_v] = ends.map(|v| self.of_vertex(v));
         let position = match pinned {
             Some(vertex) => at(vertex),
-            None => self.placement.place(ends.map(at), [q_u, q_v]),
+            None => self.placement.place(ends.map(at), [&of_u[0], &of_v[0]]),
         };
-        let (second_cost, weight) = error(&q_u.plus(q_v), position);
-        let Some(quadrics) = &self.cost_quadrics else {
-            return Candidate { position, cost: second_cost, second_cost, mean_square: mean(second_cost, weight) };
+        let (second_cost, weight) = error(&of_u[0].plus(&of_v[0]), position);
+        let (cost, weight) = match (of_u.get(1), of_v.get(1)) {
+            (Some(q_u), Some(q_v)) => error(&q_u.plus(q_v), position),
+            _ => (second_cost, weight),
         };
-        let [q_u, q_v] = ends.map(|v| &quadrics[v as usize]);
-        let (cost, weight) = error(&q_u.plus(q_v), position);
-        Candidate { position, cost, second_cost, mean_square: mean(cost, weight) }
+        Candidate { position, cost, second_cost, mean_square: if weight > 0.0 { cost / weight } else { 0.0 } }
     }
 
     fn merge(&mut self, gone: u32, kept: u32) {
-        for quadrics in std::iter::once(&mut self.position_quadrics).chain(&mut self.cost_quadrics) {
-            let gone = quadrics[gone as usize];
-            quadrics[kept as usize].add(&gone);
+        let stride = 1 + usize::from(self.is_weighted);
+        for k in 0..stride {
+            let gone = self.quadrics[stride * gone as usize + k];
+            self.quadrics[stride * kept as usize + k].add(&gone);
         }
     }
 }
@@ -136,8 +148,4 @@ fn error(q: &Quadric, x: glam::DVec3) -> (f64, f64) {
     let weight = q.total_weight();
     let value = q.value(x);
     (if value < NOISE * weight { 0.0 } else { value.max(0.0) }, weight)
-}
-
-fn mean(sum: f64, weight: f64) -> f64 {
-    if weight > 0.0 { sum / weight } else { 0.0 }
 }
