@@ -8,6 +8,7 @@ mod collapser;
 mod frame;
 mod guards;
 mod level;
+mod locality;
 mod metric;
 mod options;
 mod placement;
@@ -26,6 +27,7 @@ use collapser::{EdgeCollapser, Limits};
 use frame::Frame;
 use guards::Guards;
 use level::{Origin, level_of};
+use locality::Locality;
 use metric::QuadricMetric;
 use surface::Surface;
 
@@ -131,16 +133,18 @@ pub fn simplify(
     let targets = options.counts(mesh.triangle_count())?;
     check_mesh(mesh, importance)?;
 
-    // Look at the input.
-    let lists = CornerLists::of(mesh);
-    let edges = Edges::of(mesh, &lists);
-    let frame = Frame::of(mesh, &lists);
-    let origin = Origin { mesh, frame, topology: TopologyCounts::of(mesh, &lists, &edges) };
+    // Look at the input, under numbers that keep neighbours together.
+    let frame = Frame::of(mesh);
+    let locality = Locality::of(mesh, &frame);
+    let sorted = locality.apply(mesh)?;
+    let lists = CornerLists::of(&sorted);
+    let edges = Edges::of(&sorted, &lists);
+    let origin = Origin { mesh, frame, locality, topology: TopologyCounts::of(&sorted, &lists, &edges) };
+    progress.check()?;
 
     // Prepare quadrics and queue, and let go of what they were made from.
-    progress.check()?;
-    let surface = Surface::new(mesh, &frame, lists, &edges);
-    let metric = QuadricMetric::new(&surface, &edges, importance, options);
+    let surface = Surface::new(sorted, &frame, lists, &edges);
+    let metric = QuadricMetric::new(&surface, &edges, &origin.locality.triangles, importance, options);
     let locked = locked_vertices(&edges, mesh.vertex_count(), options.boundary);
     let ends = edges.ends;
     drop((edges.of_triangle, edges.triangle_counts));
