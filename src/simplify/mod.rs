@@ -74,7 +74,7 @@ pub enum Boundary {
 pub enum Stop {
     /// The target was reached.
     Target,
-    /// The next collapse would have passed the error bound.
+    /// No collapse is allowed any more, and at least one was withheld because it would have passed the error bound.
     Error,
     /// No collapse is allowed any more.
     QueueEmpty,
@@ -83,7 +83,8 @@ pub enum Stop {
 /// What a run changed in the topology, against its input.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct TopologyChange {
-    /// Pairs of triangles back to back that were cancelled.
+    /// Pairs of triangles back to back that were cancelled. Where a collapse lays two triangles onto each other the
+    /// same way round, one of them goes; that is not counted here.
     pub cancelled_pairs: usize,
     /// Edges with three or more triangles that the input did not have (can be negative).
     pub non_manifold_edges: i64,
@@ -104,7 +105,8 @@ pub struct Level {
     pub target: Option<usize>,
     /// Why the level ended.
     pub stop: Stop,
-    /// Largest root mean square distance of a collapse so far, sqrt(E / sum of weights), in model units.
+    /// Largest root mean square distance of a collapse so far, in model units: sqrt(E / sum of weights), where both E
+    /// and the weights include the importance, so that planes without importance do not count.
     pub error: f64,
     /// What changed in the topology.
     pub topology: TopologyChange,
