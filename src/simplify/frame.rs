@@ -4,7 +4,6 @@ use glam::DVec3;
 
 use crate::geom::Aabb;
 use crate::mesh::TriMesh;
-use crate::mesh::adjacency::{CornerLists, NONE};
 
 /// The map x -> (x - centre) / radius that takes a mesh into the unit sphere.
 ///
@@ -19,8 +18,8 @@ pub struct Frame {
 
 impl Frame {
     /// The frame of `mesh`, from the vertices that its triangles use.
-    pub fn of(mesh: &TriMesh, lists: &CornerLists) -> Self {
-        let used = || mesh.positions().iter().zip(&lists.first).filter(|&(_, &corner)| corner != NONE).map(|(&p, _)| p);
+    pub fn of(mesh: &TriMesh) -> Self {
+        let used = || mesh.triangles().iter().flatten().map(|&v| mesh.positions()[v as usize]);
         let start = mesh.positions()[mesh.triangles()[0][0] as usize];
         let bounds = used().fold(Aabb { min: start, max: start }, |b, p| Aabb { min: b.min.min(p), max: b.max.max(p) });
         let centre = bounds.centre();

@@ -8,6 +8,7 @@ mod collapser;
 mod frame;
 mod guards;
 mod level;
+mod locality;
 mod metric;
 mod options;
 mod placement;
@@ -26,6 +27,7 @@ use collapser::{EdgeCollapser, Limits};
 use frame::Frame;
 use guards::Guards;
 use level::{Origin, level_of};
+use locality::Locality;
 use metric::QuadricMetric;
 use surface::Surface;
 
@@ -72,7 +74,7 @@ pub enum Boundary {
 pub enum Stop {
     /// The target was reached.
     Target,
-    /// The next collapse would have passed the error bound.
+    /// No collapse is allowed any more, and at least one was withheld because it would have passed the error bound.
     Error,
     /// No collapse is allowed any more.
     QueueEmpty,
@@ -81,7 +83,8 @@ pub enum Stop {
 /// What a run changed in the topology, against its input.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize)]
 pub struct TopologyChange {
-    /// Pairs of triangles back to back that were cancelled.
+    /// Pairs of triangles back to back that were cancelled. Where a collapse lays two triangles onto each other the
+    /// same way round, one of them goes; that is not counted here.
     pub cancelled_pairs: usize,
     /// Edges with three or more triangles that the input did not have (can be negative).
     pub non_manifold_edges: i64,
@@ -102,7 +105,8 @@ pub struct Level {
     pub target: Option<usize>,
     /// Why the level ended.
     pub stop: Stop,
-    /// Largest root mean square distance of a collapse so far, sqrt(E / sum of weights), in model units.
+    /// Largest root mean square distance of a collapse so far, in model units: sqrt(E / sum of weights), where both E
+    /// and the weights include the importance, so that planes without importance do not count.
     pub error: f64,
     /// What changed in the topology.
     pub topology: TopologyChange,
@@ -131,16 +135,18 @@ pub fn simplify(
     let targets = options.counts(mesh.triangle_count())?;
     check_mesh(mesh, importance)?;
 
-    // Look at the input.
-    let lists = CornerLists::of(mesh);
-    let edges = Edges::of(mesh, &lists);
-    let frame = Frame::of(mesh, &lists);
-    let origin = Origin { mesh, frame, topology: TopologyCounts::of(mesh, &lists, &edges) };
+    // Look at the input, under numbers that keep neighbours together.
+    let frame = Frame::of(mesh);
+    let locality = Locality::of(mesh, &frame);
+    let sorted = locality.apply(mesh)?;
+    let lists = CornerLists::of(&sorted);
+    let edges = Edges::of(&sorted, &lists);
+    let origin = Origin { mesh, frame, locality, topology: TopologyCounts::of(&sorted, &lists, &edges) };
+    progress.check()?;
 
     // Prepare quadrics and queue, and let go of what they were made from.
-    progress.check()?;
-    let surface = Surface::new(mesh, &frame, lists, &edges);
-    let metric = QuadricMetric::new(&surface, &edges, importance, options);
+    let surface = Surface::new(sorted, &frame, lists, &edges);
+    let metric = QuadricMetric::new(&surface, &edges, &origin.locality.triangles, importance, options);
     let locked = locked_vertices(&edges, mesh.vertex_count(), options.boundary);
     let ends = edges.ends;
     drop((edges.of_triangle, edges.triangle_counts));

@@ -54,14 +54,13 @@ pub struct Surface {
 
 impl Surface {
     /// The surface of `mesh`, in the coordinates of `frame`.
-    pub fn new(mesh: &TriMesh, frame: &Frame, lists: CornerLists, edges: &Edges) -> Self {
-        let triangles = mesh.triangles().iter().zip(&edges.of_triangle).zip(lists.next);
-        Self {
-            positions: mesh.positions().iter().map(|&p| frame.to_unit(p)).collect(),
-            triangles: triangles.map(|((&vertices, &edges), next)| Triangle { vertices, edges, next }).collect(),
-            alive: mesh.triangle_count(),
-            first: lists.first,
-        }
+    pub fn new(mesh: TriMesh, frame: &Frame, lists: CornerLists, edges: &Edges) -> Self {
+        let (mut positions, triangles) = mesh.into_parts();
+        positions.iter_mut().for_each(|p| *p = frame.to_unit(*p));
+        let alive = triangles.len();
+        let triangles = triangles.into_iter().zip(&edges.of_triangle).zip(lists.next);
+        let triangles = triangles.map(|((vertices, &edges), next)| Triangle { vertices, edges, next }).collect();
+        Self { positions, triangles, alive, first: lists.first }
     }
 
     /// The triangle's number `triangle`.

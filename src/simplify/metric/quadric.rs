@@ -27,8 +27,16 @@ pub struct QuadricMetric {
 }
 
 impl QuadricMetric {
-    /// The quadrics of the untouched `surface`. `importance` has one factor per triangle.
-    pub fn new(surface: &Surface, edges: &Edges, importance: Option<&[f64]>, options: &SimplifyOptions) -> Self {
+    /// The quadrics of the untouched `surface`.
+    ///
+    /// `triangles` names every triangle once; sums run in this order. `importance` has a factor for each of its places.
+    pub fn new(
+        surface: &Surface,
+        edges: &Edges,
+        triangles: &[u32],
+        importance: Option<&[f64]>,
+        options: &SimplifyOptions,
+    ) -> Self {
         let count = surface.positions.len();
         let mut metric = Self {
             placement: Placement { max_distance: options.max_placement_distance, regulariser: options.regulariser },
@@ -39,8 +47,8 @@ impl QuadricMetric {
             Boundary::Weight(weight) => weight,
             Boundary::Locked => 0.0,
         };
-        for t in 0..surface.triangles.len() {
-            let importance = importance.map_or(1.0, |i| i[t]);
+        for (place, &t) in triangles.iter().enumerate() {
+            let importance = importance.map_or(1.0, |factors| factors[place]);
             metric.add_triangle(
                 surface,
                 edges,
@@ -52,9 +60,9 @@ impl QuadricMetric {
     }
 
     /// Adds the plane of a triangle, and those across its boundary edges, to its corners.
-    fn add_triangle(&mut self, surface: &Surface, edges: &Edges, t: usize, terms: PlaneTerms) {
-        let corners = surface.corners_of(t as u32);
-        let vertices = surface.triangles[t].vertices;
+    fn add_triangle(&mut self, surface: &Surface, edges: &Edges, t: u32, terms: PlaneTerms) {
+        let corners = surface.corners_of(t);
+        let vertices = surface.triangle(t).vertices;
         let area_vector = area_vector_doubled(corners);
         let area = 0.5 * area_vector.length();
         if area < MIN_AREA {
@@ -70,7 +78,7 @@ impl QuadricMetric {
             return;
         }
         for k in 0..3 {
-            if edges.triangle_counts[edges.of_triangle[t][k] as usize] != 1 {
+            if edges.triangle_counts[edges.of_triangle[t as usize][k] as usize] != 1 {
                 continue;
             }
             let (a, b) = ((k + 1) % 3, (k + 2) % 3);
