@@ -63,6 +63,7 @@ pub fn image_errors(reference: &TriMesh, tests: &[&TriMesh], progress: &dyn Prog
 pub struct Gallery {
     scene: Scene,
     normals: Vec<DVec3>,
+    /// Half the diagonal of the reference's box, in its unit-sphere units: no view cuts anything off.
     half_width: f64,
 }
 
@@ -87,10 +88,12 @@ impl Gallery {
 
     /// One picture from the unit direction `toward`, `up` upward, under a light beside the camera.
     ///
+    /// The picture reaches `half_width` to each side of the centre, in unit-sphere units of the reference.
+    ///
     /// # Errors
     /// [`crate::Error::Limit`] as [`image_errors`].
-    pub fn picture(&self, toward: DVec3, up: DVec3, width: u32) -> Result<GreyImage> {
-        let buffers = self.draw(&self.upright(toward, up, width))?;
+    pub fn picture(&self, toward: DVec3, up: DVec3, width: u32, half_width: f64) -> Result<GreyImage> {
+        let buffers = self.draw(&upright(toward, up, width, half_width))?;
         Ok(shade(&buffers, buffers.near(), SAMPLES as usize, |hit| self.head_light(hit, toward)))
     }
 
@@ -105,9 +108,10 @@ impl Gallery {
         toward: DVec3,
         up: DVec3,
         width: u32,
+        half_width: f64,
         colour: impl Fn(Hit, f64) -> [f64; 3],
     ) -> Result<Vec<u8>> {
-        let buffers = self.draw(&self.upright(toward, up, width))?;
+        let buffers = self.draw(&upright(toward, up, width, half_width))?;
         let channel = |c: usize| {
             let hits = buffers.near().map(|hit| Some(hit.map_or(255.0, |h| colour(h, self.cosine(h, toward))[c])));
             shade(&buffers, hits, SAMPLES as usize, |value| value).pixels
@@ -126,10 +130,6 @@ impl Gallery {
         self.normals[hit.triangle.0 as usize].dot(toward).abs()
     }
 
-    fn upright(&self, toward: DVec3, up: DVec3, width: u32) -> View {
-        View::upright(toward, up, Window { width: SAMPLES * width, half_width: self.half_width })
-    }
-
     fn both_ways(&self, axis: DVec3) -> Result<Pictures> {
         let view = View::toward(axis, Window { width: SAMPLES * IMAGE_WIDTH, half_width: self.half_width });
         let buffers = self.draw(&view)?;
@@ -144,6 +144,21 @@ impl Gallery {
         self.scene.draw(view, &mut Screen::default(), &mut buffers)?;
         Ok(buffers)
     }
+}
+
+fn upright(toward: DVec3, up: DVec3, width: u32, half_width: f64) -> View {
+    View::upright(toward, up, Window { width: SAMPLES * width, half_width })
+}
+
+/// The half width at which a picture of `mesh` from `toward` just holds it, with a narrow margin; unit-sphere units.
+#[must_use]
+pub fn fitting_half_width(mesh: &TriMesh, toward: DVec3, up: DVec3) -> f64 {
+    const MARGIN: f64 = 1.05;
+    let frame = Frame::of(mesh);
+    let view = upright(toward, up, 1, 1.0);
+    let corners = mesh.triangles().iter().flatten().map(|&v| frame.to_unit(mesh.positions()[v as usize]));
+    let reach = corners.map(|p| p.dot(view.right).abs().max(p.dot(view.up).abs())).fold(0.0, f64::max);
+    MARGIN * reach
 }
 
 #[derive(Debug, Clone, Copy, Default)]

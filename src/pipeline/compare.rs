@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::error::Result;
 use crate::eval::geometric::{GeometricOptions, SampleCount, geometric_error};
-use crate::eval::{Gallery, ImageError, image_errors};
+use crate::eval::{Gallery, ImageError, fitting_half_width, image_errors};
 use crate::io::{self, ReadOptions};
 use crate::mesh::TriMesh;
 use crate::pipeline::Observer;
@@ -118,7 +118,8 @@ fn contact_sheet(
     let directions = views_around(up);
     let pictures = |mesh: &TriMesh| -> Result<Vec<GreyImage>> {
         let gallery = Gallery::new(mesh, reference);
-        directions.iter().map(|&toward| gallery.picture(toward, up, PICTURE_WIDTH)).collect()
+        let reach = |toward: DVec3| fitting_half_width(reference, toward, up);
+        directions.iter().map(|&toward| gallery.picture(toward, up, PICTURE_WIDTH, reach(toward))).collect()
     };
     let original = pictures(reference)?;
     let others: Vec<Vec<GreyImage>> = tests.iter().map(pictures).collect::<Result<_>>()?;

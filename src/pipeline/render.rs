@@ -3,7 +3,7 @@ use std::path::PathBuf;
 use glam::DVec3;
 
 use crate::error::{Error, Result};
-use crate::eval::Gallery;
+use crate::eval::{Gallery, fitting_half_width};
 use crate::io::{self, ReadOptions};
 use crate::mesh::TriMesh;
 use crate::pipeline::Observer;
@@ -70,7 +70,7 @@ pub fn render_file(request: &RenderRequest, observer: &dyn Observer) -> Result<(
 }
 
 fn flat(mesh: &TriMesh, toward: DVec3, up: DVec3, request: &RenderRequest) -> Result<Picture> {
-    let image = Gallery::new(mesh, mesh).picture(toward, up, request.size)?;
+    let image = Gallery::new(mesh, mesh).picture(toward, up, request.size, fitting_half_width(mesh, toward, up))?;
     let on_white = |grey: f32| if grey == 0.0 { [255; 3] } else { [grey as u8; 3] };
     Picture::from_values(request.size, request.size, &image.pixels, on_white)
 }
@@ -79,10 +79,11 @@ fn flat(mesh: &TriMesh, toward: DVec3, up: DVec3, request: &RenderRequest) -> Re
 fn heat(mesh: &TriMesh, toward: DVec3, up: DVec3, request: &RenderRequest, observer: &dyn Observer) -> Result<Picture> {
     let visibility = visibility::measure(mesh, &request.measure, observer)?;
     let gallery = Gallery::new(mesh, mesh);
-    let picture = gallery.coloured(toward, up, request.size, |hit, brightness| {
-        let colour = request.colour_map.colour(visibility.per_triangle()[hit.triangle.0 as usize]);
-        colour.map(|channel| f64::from(channel) * (0.5 + 0.5 * brightness))
-    })?;
+    let picture =
+        gallery.coloured(toward, up, request.size, fitting_half_width(mesh, toward, up), |hit, brightness| {
+            let colour = request.colour_map.colour(visibility.per_triangle()[hit.triangle.0 as usize]);
+            colour.map(|channel| f64::from(channel) * (0.5 + 0.5 * brightness))
+        })?;
     let picture = Picture::from_rgb(request.size, request.size, picture)?;
     Ok(if request.legend { with_legend(&picture, request.colour_map, "visibility V") } else { picture })
 }
