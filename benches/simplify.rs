@@ -6,7 +6,7 @@
 
 mod common;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use outsight::mesh::TriMesh;
@@ -50,14 +50,14 @@ fn to_five_percent(mesh: &TriMesh, importance: Option<&[f64]>) -> TriMesh {
     simplify(mesh, importance, &options, &Silent).unwrap().swap_remove(0).mesh
 }
 
-fn memory_in_a_process_of_its_own(path: &PathBuf) -> String {
+fn memory_in_a_process_of_its_own(path: &Path) -> String {
     let program = std::env::current_exe().expect("a running program has a file");
     let child = Command::new(program).env(MEMORY_OF, path).output().unwrap();
     String::from_utf8_lossy(&child.stdout).trim().to_owned()
 }
 
 /// Peak above the memory that the process had with the mesh read and weights made, plus the mesh itself, per triangle.
-fn print_memory(path: &PathBuf) {
+fn print_memory(path: &Path) {
     let mesh = common::load(path);
     let weights = vec![0.25; mesh.triangle_count()];
     let mesh_bytes = 12 * mesh.triangle_count() + 24 * mesh.vertex_count() + 8 * mesh.triangle_count();

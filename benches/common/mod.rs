@@ -2,7 +2,7 @@
 
 #![allow(dead_code)]
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use cpu_time::ProcessTime;
 use outsight::io::{ReadOptions, read};
@@ -18,7 +18,7 @@ pub fn models() -> Vec<PathBuf> {
     }
 }
 
-pub fn load(path: &PathBuf) -> TriMesh {
+pub fn load(path: &Path) -> TriMesh {
     match read(path, &ReadOptions::default()) {
         Ok(loaded) => loaded.mesh,
         Err(error) => {
@@ -29,7 +29,7 @@ pub fn load(path: &PathBuf) -> TriMesh {
 }
 
 /// The file's name without folder and extensions.
-pub fn name(path: &PathBuf) -> String {
+pub fn name(path: &Path) -> String {
     let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     file.split('.').next().unwrap_or_default().to_owned()
 }
