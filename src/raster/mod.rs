@@ -1,6 +1,6 @@
 //! A CPU rasteriser that draws both item buffers of an axis in one pass over the triangles.
 //!
-//! For every pixel centre of a [`View`] it finds the triangle nearest to the camera at +d and the one nearest to the
+//! For every pixel centre of a [`View`](crate::camera::View) it finds the triangle nearest to the camera at +d and the one nearest to the
 //! camera at −d: an item buffer (Zhang & Turk 2002, section 4) for each of the two.
 //!
 //! The answer is exact and watertight for the vertices as snapped to a grid far finer than a pixel (2⁻¹⁸ of one at 480
