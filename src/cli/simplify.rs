@@ -39,7 +39,7 @@ pub struct Flags {
     /// Stop at this share of the triangles, in (0, 1]
     #[arg(short, long, value_name = "RATIO", value_parser = values::ratio, group = "size")]
     ratio: Option<f64>,
-    /// Stop before this root mean square distance, in model units
+    /// Stop before this root mean square distance from what is visible, in model units
     #[arg(short = 'e', long, value_name = "ERROR", value_parser = values::length, group = "size")]
     max_error: Option<f64>,
     /// Several results in one run, from large to small, as in 0.5,0.25,5000

@@ -54,7 +54,7 @@ pub struct SimplifyRequest {
     pub hidden: Hidden,
     /// p in V^p, 0 to 16.
     pub visibility_power: f64,
-    /// The collapser's options; its `targets` are those of `levels`.
+    /// The collapser's options; `targets` comes from `levels`, `importance_floor` from `hidden`.
     pub simplify: SimplifyOptions,
     /// Levels of detail, each at most as large as the one before.
     pub levels: Vec<LevelRequest>,
@@ -104,7 +104,8 @@ pub fn simplify_seen(
     observer: &dyn Observer,
 ) -> Result<Simplified> {
     let given = mesh.triangle_count();
-    let options = request.simplify.clone().with_targets(request.targets(given));
+    let importance_floor = request.hidden.importance_floor();
+    let options = SimplifyOptions { targets: request.targets(given), importance_floor, ..request.simplify.clone() };
     let Some(look) = look else {
         return Ok(Simplified { levels: simplify(&mesh, None, &options, observer)?, hidden_deleted: 0 });
     };
@@ -154,7 +155,7 @@ pub struct LevelReport {
     pub output: usize,
     /// Why it stopped: `target`, `error` or `queue_empty`.
     pub stop: &'static str,
-    /// Largest root mean square distance of a collapse, in model units.
+    /// Largest root mean square distance of a collapse from the planes of visible surface, in model units.
     pub error: f64,
     /// The file.
     pub file: PathBuf,

@@ -28,6 +28,9 @@ pub struct SimplifyOptions {
     pub max_valence: Option<usize>,
     /// Farthest that the minimum of the quadric may be from the middle of the edge to be taken, in edge lengths.
     pub max_placement_distance: f64,
+    /// Share of every triangle's importance that orders collapses but is no part of the error, finite and at least 0: a
+    /// trace given to triangles that do not matter, so that they too collapse in a good order.
+    pub importance_floor: f64,
     /// Strength of the pull toward where the vertices were, as a share of the plane weight, 0 (off) to 1e-3; makes
     /// placement on near-planar surface unique. It moves positions only and is no part of any cost.
     pub regulariser: f64,
@@ -45,6 +48,7 @@ impl Default for SimplifyOptions {
             min_compactness: 0.0,
             max_valence: None,
             max_placement_distance: 2.0,
+            importance_floor: 0.0,
             regulariser: 1e-6,
         }
     }
@@ -93,6 +97,7 @@ impl SimplifyOptions {
         in_range("min normal cosine", self.min_normal_cosine, -1.0..=1.0)?;
         in_range("min compactness", self.min_compactness, 0.0..=1.0)?;
         in_range("max placement distance", self.max_placement_distance, 0.0..=1e6)?;
+        in_range("importance floor", self.importance_floor, 0.0..=1e6)?;
         in_range("regulariser", self.regulariser, 0.0..=MAX_REGULARISER)
     }
 

@@ -23,6 +23,15 @@ impl Hidden {
             Self::Delete => "delete",
         }
     }
+
+    /// What [`importance`] gives to a triangle that nobody sees without meaning that it matters.
+    #[must_use]
+    pub fn importance_floor(self) -> f64 {
+        match self {
+            Self::Keep => 0.0,
+            Self::Collapse | Self::Delete => HIDDEN_WEIGHT,
+        }
+    }
 }
 
 /// Smallest visibility under [`Hidden::Keep`].

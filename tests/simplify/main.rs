@@ -340,3 +340,21 @@ fn uniform_weights_and_area_weights_differ() {
     let uniform = SimplifyOptions { plane_weight: PlaneWeight::Uniform, ..to(12) };
     assert!(is_closed(&run(&mesh, &uniform).mesh));
 }
+
+#[test]
+fn a_trace_of_importance_orders_collapses_but_is_no_error() {
+    const TRACE: f64 = 1e-6;
+    let mesh = bumpy_sheet(24, |x, y| (0.5 * x).sin() + (0.3 * y).cos());
+    let options = SimplifyOptions { importance_floor: TRACE, ..to(100) };
+    let with = |importance: f64| {
+        let importance = vec![importance; mesh.triangle_count()];
+        simplify(&mesh, Some(&importance), &options, &Silent).unwrap().swap_remove(0)
+    };
+    let unseen = with(TRACE);
+    assert!(unseen.mesh.triangle_count() <= 100);
+    assert_eq!(unseen.error, 0.0);
+    let seen = with(1.0 + TRACE);
+    let plain = run(&mesh, &to(100));
+    assert!(plain.error > 0.0);
+    assert!((seen.error / plain.error - 1.0).abs() < 1e-3, "{} and {}", seen.error, plain.error);
+}

@@ -24,6 +24,8 @@ pub struct QuadricMetric {
     quadrics: Vec<Quadric>,
     /// Whether Q_v differs from Q.
     is_weighted: bool,
+    /// The part of Q that is in Q_v without being error; see [`SimplifyOptions::importance_floor`].
+    importance_floor: f64,
 }
 
 impl QuadricMetric {
@@ -42,6 +44,7 @@ impl QuadricMetric {
             placement: Placement { max_distance: options.max_placement_distance, regulariser: options.regulariser },
             quadrics: vec![Quadric::default(); if importance.is_some() { 2 * count } else { count }],
             is_weighted: importance.is_some(),
+            importance_floor: options.importance_floor,
         };
         let boundary_weight = match options.boundary {
             Boundary::Weight(weight) => weight,
@@ -134,12 +137,13 @@ impl Metric for QuadricMetric {
             Some(vertex) => at(vertex),
             None => self.placement.place(ends.map(at), [&of_u[0], &of_v[0]]),
         };
-        let (second_cost, weight) = error(&of_u[0].plus(&of_v[0]), position);
-        let (cost, weight) = match (of_u.get(1), of_v.get(1)) {
-            (Some(q_u), Some(q_v)) => error(&q_u.plus(q_v), position),
-            _ => (second_cost, weight),
+        let unweighted = error(&of_u[0].plus(&of_v[0]), position);
+        let (weighted, floor) = match (of_u.get(1), of_v.get(1)) {
+            (Some(q_u), Some(q_v)) => (error(&q_u.plus(q_v), position), self.importance_floor),
+            _ => (unweighted, 0.0),
         };
-        Candidate { position, cost, second_cost, mean_square: if weight > 0.0 { cost / weight } else { 0.0 } }
+        let mean_square = mean_above_floor(weighted, unweighted, floor);
+        Candidate { position, cost: weighted.0, second_cost: unweighted.0, mean_square }
     }
 
     fn merge(&mut self, gone: u32, kept: u32) {
@@ -149,6 +153,17 @@ impl Metric for QuadricMetric {
             self.quadrics[stride * kept as usize + k].add(&gone);
         }
     }
+}
+
+/// Mean of a sum over its weight, after `floor` times the unweighted sum and weight is taken off; 0 where all is floor.
+fn mean_above_floor((sum, weight): (f64, f64), unweighted: (f64, f64), floor: f64) -> f64 {
+    let floor_weight = floor * unweighted.1;
+    let counted_weight = weight - floor_weight;
+    // What is left of equal numbers is their rounding.
+    if counted_weight <= 1e-6 * floor_weight {
+        return 0.0;
+    }
+    (sum - floor * unweighted.0).max(0.0) / counted_weight
 }
 
 /// The error of `q` at `x`, 0 where it is rounding, and the sum of its weights.
