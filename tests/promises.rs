@@ -78,7 +78,7 @@ fn any_number_of_threads_gives_the_same_bytes() {
     let run = |threads: &str| -> Vec<Vec<u8>> {
         let file = |name: &str| -> PathBuf { folder.path().join(format!("{threads}-{name}")) };
         let outsight = |arguments: &[&str], output: &Path| {
-            let quick = ["--cameras", "66", "--resolution", "200", "--threads", threads, "-q", "-o"];
+            let quick = ["--cameras", "66", "--resolution", "100", "--threads", threads, "-q", "-o"];
             Command::cargo_bin("outsight").unwrap().args(arguments).args(quick).arg(output).assert().success();
         };
         outsight(&["measure", GEARBOX], &file("v.npy"));

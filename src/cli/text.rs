@@ -1,19 +1,13 @@
 //! Numbers and tables as people read them.
 
+use outsight::report::table::{Table, thousands};
+
 /// Bytes in a MiB.
 const MIB: f64 = 1024.0 * 1024.0;
 
 /// A count with its thousands set apart: `871,414`.
 pub fn count(number: usize) -> String {
-    let digits = number.to_string();
-    let mut text = String::with_capacity(digits.len() + digits.len() / 3);
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
+    thousands(number as u64)
 }
 
 /// Bytes in MiB or GiB.
@@ -51,25 +45,10 @@ pub fn pairs(rows: &[(&str, String)]) -> String {
     rows.iter().map(|(name, value)| format!("{name:width$}  {value}\n")).collect()
 }
 
-/// A table: the first column to the left, all others to the right, two blanks between them.
+/// A table of these heads and rows: the first column to the left, all others to the right.
 pub fn table(heads: &[&str], rows: &[Vec<String>]) -> String {
-    let width = |column: usize| {
-        let cells = rows.iter().filter_map(|r| r.get(column)).map(|c| c.chars().count());
-        cells.chain([heads[column].chars().count()]).max().unwrap_or(0)
-    };
-    let widths: Vec<usize> = (0..heads.len()).map(width).collect();
-    let head: Vec<String> = heads.iter().map(|h| (*h).to_owned()).collect();
-    std::iter::once(&head).chain(rows).map(|row| line(row, &widths)).collect()
-}
-
-fn line(row: &[String], widths: &[usize]) -> String {
-    let cells: Vec<String> = row
-        .iter()
-        .zip(widths)
-        .enumerate()
-        .map(|(i, (cell, &width))| if i == 0 { format!("{cell:width$}") } else { format!("{cell:>width$}") })
-        .collect();
-    cells.join("  ").trim_end().to_owned() + "\n"
+    let empty = Table::new(heads.iter().copied());
+    rows.iter().fold(empty, |table, row| table.row(row.iter().map(String::as_str))).to_string()
 }
 
 #[cfg(test)]
@@ -77,19 +56,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn thousands_are_set_apart() {
-        assert_eq!([0, 999, 1000, 871_414, 1_000_000].map(count), ["0", "999", "1,000", "871,414", "1,000,000"]);
-    }
-
-    #[test]
     fn lengths_keep_four_digits() {
         let shown = [0.0, 47.971, 0.001_234_5, 123_456.7, 1.234e-9, 2.5e9].map(significant);
         assert_eq!(shown, ["0", "47.97", "0.001234", "123457", "1.234e-9", "2.500e9"]);
-    }
-
-    #[test]
-    fn table_aligns_numbers_right() {
-        let rows = [vec!["a".to_owned(), "10".to_owned()], vec!["long".to_owned(), "7".to_owned()]];
-        assert_eq!(table(&["file", "n"], &rows), "file   n\na     10\nlong   7\n");
     }
 }
