@@ -1,6 +1,5 @@
 //! Flags that several commands share. A flag means the same in every command.
 
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -39,8 +38,8 @@ pub struct GlobalFlags {
     #[arg(long, global = true, value_name = "WHEN", default_value = "auto")]
     pub progress: Show,
     /// Threads to use; any number gives the same result [default: all]
-    #[arg(long, global = true, value_name = "N")]
-    pub threads: Option<NonZeroUsize>,
+    #[arg(long, global = true, value_name = "N", value_parser = values::threads)]
+    pub threads: Option<usize>,
     /// Refuse work that needs more memory than this, as in 2G or 500M
     #[arg(long, global = true, value_name = "SIZE", value_parser = values::bytes)]
     pub memory_limit: Option<u64>,
@@ -59,7 +58,7 @@ impl GlobalFlags {
     /// [`Error::Limit`] if the system refuses to.
     pub fn start_threads(&self) -> Result<()> {
         let Some(threads) = self.threads else { return Ok(()) };
-        rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global().map_err(|e| Error::Limit {
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().map_err(|e| Error::Limit {
             message: format!("--threads {threads}: the system does not start that many ({e}); ask for fewer"),
         })
     }

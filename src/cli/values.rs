@@ -39,6 +39,15 @@ pub fn seconds(text: &str) -> Result<Duration, String> {
     if number > 0.0 { Duration::try_from_secs_f64(number).map_err(|e| e.to_string()) } else { Err(form.to_owned()) }
 }
 
+/// A number of threads: beyond some, they cost more than they do.
+pub fn threads(text: &str) -> Result<usize, String> {
+    const MOST: usize = 1024;
+    match text.parse() {
+        Ok(count) if (1..=MOST).contains(&count) => Ok(count),
+        _ => Err(format!("threads are a number from 1 to {MOST}")),
+    }
+}
+
 /// A number of octahedral cameras.
 pub fn cameras(text: &str) -> Result<usize, String> {
     let number = text.parse().ok().filter(|n| CAMERA_COUNTS.contains(n));
@@ -151,6 +160,12 @@ mod tests {
         assert_eq!(level_size("1"), Ok(LevelSize::Ratio(1.0)));
         assert_eq!(level_size("5000"), Ok(LevelSize::Triangles(5000)));
         assert!(level_size("1.5").is_err());
+    }
+
+    #[test]
+    fn threads_are_bounded() {
+        assert_eq!((threads("1"), threads("1024")), (Ok(1), Ok(1024)));
+        assert!(["0", "1025", "100000", "-1", "two"].into_iter().all(|text| threads(text).is_err()));
     }
 
     #[test]
