@@ -26,7 +26,7 @@ use std::time::Instant;
 use crate::error::Result;
 use crate::io::{self, Loaded, TriangleAttributes, WriteOptions};
 use crate::progress::{CancelFlag, Progress, Silent};
-use crate::visibility;
+use crate::visibility::{self, Look};
 
 /// Reads a mesh, looks at it, simplifies it where nobody looks, writes every level.
 ///
@@ -40,22 +40,29 @@ pub fn run_simplify(request: &SimplifyRequest, observer: &dyn Observer) -> Resul
         observer.mesh_read(&request.input, &loaded)?;
         loaded.mesh
     };
-    let read = clock.lap();
-    let view = match request.metric {
-        Metric::Visibility => Some(visibility::look(&mesh, &request.measure, request.hidden, observer)?),
+    request.check_levels(mesh.triangle_count())?;
+    let mut seconds = SimplifySeconds { read: clock.lap(), ..SimplifySeconds::default() };
+    let look = match request.metric {
+        Metric::Visibility => {
+            let scene = visibility::scene_of(&mesh);
+            let visibility = visibility::measure_scene(&scene, &mesh, &request.measure, observer)?;
+            seconds.visibility = clock.lap();
+            let hidden = request.hidden.marks(&scene, &mesh, &visibility, &request.measure, observer)?;
+            seconds.hidden = clock.lap();
+            Some(Look { visibility, hidden })
+        }
         Metric::Quadric => None,
     };
-    let looked = clock.lap();
     let triangles = mesh.triangle_count();
-    let simplified = simplify_seen(mesh, view, request, observer)?;
-    let collapsed = clock.lap();
+    let simplified = simplify_seen(mesh, look, request, observer)?;
+    seconds.simplify = clock.lap();
+    observer.check()?;
     for (level, wanted) in simplified.levels.iter().zip(&request.levels) {
-        observer.check()?;
         let options = WriteOptions { force: request.force, format: request.format };
         io::write(&wanted.output, &level.mesh, &TriangleAttributes::default(), &options)?;
     }
-    let seconds =
-        SimplifySeconds { read, visibility: looked, simplify: collapsed, write: clock.lap(), total: clock.total() };
+    seconds.write = clock.lap();
+    seconds.total = clock.total();
     Ok(SimplifyReport::new(request, triangles, &simplified, seconds))
 }
 

@@ -18,6 +18,8 @@ const CUBE: &str = "OFF\n8 12 0\n-1 -1 -1\n1 -1 -1\n-1 1 -1\n1 1 -1\n-1 -1 1\n1 
 /// Fewer pixels than any default, for speed.
 const SMALL: [&str; 4] = ["--cameras", "18", "--resolution", "64"];
 
+const GEARBOX: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/gearbox.ply.zst");
+
 /// A directory with `cube.off` and `bumps.off`, an open sheet of 2·40·40 triangles.
 fn directory() -> TempDir {
     let directory = tempfile::tempdir().unwrap();
@@ -139,6 +141,57 @@ fn wrong_sizes_say_what_was_meant() {
 }
 
 #[test]
+fn preserving_topology_keeps_closed_meshes_closed() {
+    let home = directory();
+    let ended = run(
+        home.path(),
+        &["simplify", GEARBOX, "-o", "x.ply", "-r", "0.3", "--topology", "preserve", "--hidden", "delete"],
+    );
+    assert_eq!(ended.code, 2);
+    assert!(ended.err.contains("--hidden collapse"), "{}", ended.err);
+    let quick = ["--cameras", "66", "--resolution", "100"];
+    let kept =
+        [&["simplify", GEARBOX, "-o", "x.ply", "-r", "0.3", "--topology", "preserve", "--json"][..], &quick].concat();
+    let topology = json(home.path(), &kept)["levels"][0]["topology"].clone();
+    for unchanged in ["components", "boundary_edges", "non_manifold_edges", "euler_characteristic"] {
+        assert_eq!(topology[unchanged], 0, "{unchanged}");
+    }
+    let info = json(home.path(), &["info", "x.ply", "--json"]);
+    assert_eq!(info["topology"]["closed"], true);
+}
+
+#[test]
+fn topology_is_counted_from_the_mesh_as_read() {
+    let home = directory();
+    let options = ["-o", "x.ply", "-r", "0.1", "--cameras", "66", "--resolution", "100", "--json"];
+    let report = json(home.path(), &[&["simplify", GEARBOX][..], &options].concat());
+    assert!(report["hidden_deleted"].as_u64().unwrap() > 0);
+    let [before, after] =
+        [GEARBOX, "x.ply"].map(|file| json(home.path(), &["info", file, "--json"])["topology"].clone());
+    for key in ["components", "boundary_edges", "non_manifold_edges", "euler_characteristic"] {
+        let change = after[key].as_i64().unwrap() - before[key].as_i64().unwrap();
+        assert_eq!(report["levels"][0]["topology"][key], change, "{key}");
+    }
+}
+
+#[test]
+fn several_levels_do_not_fit_one_pipe() {
+    let home = directory();
+    let ended = run(home.path(), &["simplify", "bumps.off", "-o", "-", "--output-format", "ply", "--lods", "0.5,0.1"]);
+    assert_eq!(ended.code, 2);
+    assert_eq!(names(home.path()), ["bumps.off", "cube.off"]);
+}
+
+#[test]
+fn a_mesh_too_thin_to_be_seen_is_an_error() {
+    let home = directory();
+    fs::write(home.path().join("line.off"), "OFF\n3 1 0\n0 0 0\n1 0 0\n0.5 1e-15 0\n3 0 1 2\n").unwrap();
+    let ended = run(home.path(), &["measure", "line.off"]);
+    assert_eq!(ended.code, 3);
+    assert!(ended.err.contains("1e-14"), "{}", ended.err);
+}
+
+#[test]
 fn errors_say_what_and_where_in_one_line() {
     let home = directory();
     fs::write(home.path().join("bad.off"), "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 9\n").unwrap();
@@ -175,7 +228,7 @@ fn simplify_json_has_the_promised_keys() {
         (&object["schema"], &object["triangles"], &object["metric"]),
         (&1.into(), &3200.into(), &"visibility".into())
     );
-    assert_eq!(keys(&object["seconds"]), ["read", "visibility", "simplify", "write", "total"]);
+    assert_eq!(keys(&object["seconds"]), ["read", "visibility", "simplify", "write", "total", "hidden"]);
     assert!(object.get("peak_mb").is_some());
     let levels = object["levels"].as_array().unwrap();
     for (level, (target, file)) in levels.iter().zip([(1600, "x-lod0.ply"), (800, "x-lod1.ply"), (100, "x-lod2.ply")]) {
@@ -333,10 +386,10 @@ fn help_of_every_command_ends_with_examples() {
 #[test]
 fn closed_pipe_ends_quietly() {
     let home = directory();
-    // Neither text, help nor a mesh finds a reader; `true` closes its end at once.
+    // Neither text, help nor a mesh finds a reader: `true` has ended before the program begins.
     for command in ["completions bash", "info cube.off", "--help", "convert bumps.off - --output-format obj"] {
         let binary = assert_cmd::cargo::cargo_bin("outsight");
-        let script = format!("set -o pipefail; {} {command} | true", binary.display());
+        let script = format!("set -o pipefail; (sleep 0.3; {} {command}) | true", binary.display());
         let output = Process::new("bash").args(["-c", &script]).current_dir(home.path()).output().unwrap();
         assert_eq!(output.status.code(), Some(0), "{command}");
         assert!(output.stderr.is_empty(), "{command}: {}", String::from_utf8_lossy(&output.stderr));

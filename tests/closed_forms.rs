@@ -81,6 +81,18 @@ fn t1_holds_with_every_number_of_cameras_and_both_weights() {
 }
 
 #[test]
+fn t1_holds_at_the_ends_of_the_range_of_numbers() {
+    let sphere = shapes::icosphere(3);
+    let expected = look(&sphere).of_mesh();
+    for exponent in [-1000, -40, 40, 300] {
+        let scale = 2.0_f64.powi(exponent);
+        let positions = sphere.positions().iter().map(|&p| scale * p).collect();
+        let scaled = TriMesh::new(positions, sphere.triangles().to_vec()).unwrap();
+        assert_eq!(look(&scaled).of_mesh(), expected, "times 2^{exponent}");
+    }
+}
+
+#[test]
 fn t2_nothing_inside_a_sealed_shell_is_seen() {
     for seed in 0..4 {
         let shape = shapes::cluttered_sealed_box(seed, 20, 4);

@@ -33,10 +33,14 @@ impl Frame {
     #[must_use]
     pub fn of(mesh: &TriMesh) -> Self {
         let centre = mesh.bounds().centre();
-        let farthest = corners_of_all(mesh).map(|p| p.distance_squared(centre)).fold(0.0, f64::max);
-        // A mesh whose triangles all shrank to one point still needs a finite frame.
-        let radius = if farthest > 0.0 { farthest.sqrt() } else { 1.0 };
-        Self { centre, radius }
+        // Squares of very small or large lengths would leave the range of numbers, so they are scaled first.
+        let scale = corners_of_all(mesh).map(|p| (p - centre).abs().max_element()).fold(0.0, f64::max);
+        if scale == 0.0 {
+            // A mesh whose triangles all shrank to one point still needs a finite frame.
+            return Self { centre, radius: 1.0 };
+        }
+        let farthest = corners_of_all(mesh).map(|p| ((p - centre) / scale).length_squared()).fold(0.0, f64::max);
+        Self { centre, radius: scale * farthest.sqrt() }
     }
 
     /// `p` in unit-sphere coordinates.

@@ -82,7 +82,8 @@ fn text(report: &CompareReport, request: &CompareRequest) -> String {
     let sheet = request.sheet.as_ref().map(|p| format!("contact sheet: {}\n", p.display())).unwrap_or_default();
     format!(
         "{}image: root mean square difference in grey levels (0 to 255); outline: pixels per picture in one silhouette \
-         only;\nmean, rms, max: distance between the surfaces in % of the diagonal of {}\n{sheet}",
+         only;\nmean, rms, max: distance between the surfaces in % of the diagonal of {}, hidden surface \
+         included\n{sheet}",
         table(&heads, &rows),
         request.reference.display()
     )

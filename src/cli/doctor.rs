@@ -120,7 +120,7 @@ fn self_check_in_words(check: &SelfCheck) -> String {
     let verdict = if check.passed { "passed" } else { "FAILED, do not trust this build" };
     match (&check.error, check.visibility) {
         (Some(error), _) => format!("{verdict}: {error}"),
-        (None, Some(value)) => format!("{verdict}: {} ({value:.4})", check.what),
+        (None, Some(value)) => format!("{verdict}: {}, within 0.01 ({value:.4})", check.what),
         (None, None) => verdict.to_owned(),
     }
 }

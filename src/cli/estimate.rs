@@ -1,5 +1,7 @@
 //! Estimates of memory and time, made before the work.
 
+use outsight::visibility::MeasureOptions;
+
 /// What a run does.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Task {
@@ -48,10 +50,9 @@ pub fn memory_bytes(task: Task, triangles: usize) -> u64 {
     FLOOR_BYTES + READ_BYTES * triangles + working
 }
 
-/// Resolution that measuring chooses by itself: 480·√(T/250,000), within 480 and 4096.
+/// Resolution that measuring chooses by itself.
 fn chosen_resolution(triangles: u64) -> u32 {
-    let wanted = 480.0 * (triangles as f64 / 250_000.0).sqrt();
-    wanted.clamp(480.0, 4096.0) as u32
+    MeasureOptions::default().resolution_for(triangles as usize)
 }
 
 /// Seconds of one thread per triangle and camera axis, measured on scans of 0.1 to 1 million triangles.
@@ -68,7 +69,12 @@ pub fn measure_seconds(triangles: usize, cameras: usize) -> f64 {
     axis * cameras as f64 / 2.0 / rayon::current_num_threads() as f64
 }
 
-/// Seconds to simplify a mesh of that many triangles to a small share of them, once it is measured. Rough.
-pub fn simplify_seconds(triangles: usize) -> f64 {
-    triangles as f64 / COLLAPSED_TRIANGLES_PER_SECOND
+/// Looking again for hidden triangles takes this many times as long as measuring: 2 on a mesh that hides little, 14 on
+/// one that hides much behind slits.
+const LOOKING_AGAIN: f64 = 7.0;
+
+/// Seconds to simplify a mesh of that many triangles to a small share of them, measuring included. Rough.
+pub fn simplify_seconds(triangles: usize, cameras: usize) -> f64 {
+    let looking = (1.0 + LOOKING_AGAIN) * measure_seconds(triangles, cameras);
+    looking + triangles as f64 / COLLAPSED_TRIANGLES_PER_SECOND
 }

@@ -46,7 +46,7 @@ deleted, and counted in a warning; --hidden keep keeps them.
 Examples:
   outsight simplify part.ply -o small.ply -r 0.05            keep 5 % of the triangles
   outsight simplify part.obj -o small.stl -t 20000 -e 0.1    20,000 triangles, or error 0.1
-  outsight simplify part.ply -o lod/{}.ply --lods 0.5,0.25,0.1
+  outsight simplify part.ply -o part-{}.ply --lods 0.5,0.25,0.1
   outsight simplify part.ply -o qb.ply -r 0.05 --metric quadric
   outsight simplify - -o - --output-format ply -r 0.1 < in.stl > out.ply";
 

@@ -86,7 +86,7 @@ fn report(path: &Path, loaded: &Loaded) -> Report {
         size: size(&loaded.mesh),
         estimate: Estimate {
             measure_seconds: estimate::measure_seconds(triangles, ESTIMATED_CAMERAS),
-            simplify_seconds: estimate::simplify_seconds(triangles),
+            simplify_seconds: estimate::simplify_seconds(triangles, ESTIMATED_CAMERAS),
             peak_mb: peak as f64 / f64::from(1 << 20),
         },
         welded: loaded.welded,
@@ -135,7 +135,7 @@ fn text(path: &Path, report: &Report) -> String {
         ("diagonal", format!("{:.6}", size.diagonal)),
         ("area", format!("{:.6}", size.area)),
         ("measure takes about", format!("{} from {ESTIMATED_CAMERAS} cameras", duration(estimate.measure_seconds))),
-        ("simplify adds about", duration(estimate.simplify_seconds)),
+        ("simplify takes about", duration(estimate.simplify_seconds)),
         ("memory about", megabytes((estimate.peak_mb * f64::from(1 << 20)) as u64)),
     ];
     if let Some(welded) = report.welded {

@@ -82,7 +82,6 @@ fn text(report: &MeasureReport, request: &MeasureRequest) -> String {
     let never = 100.0 * seen.never_seen as f64 / report.triangles as f64;
     let mut rows = vec![
         ("visibility of the mesh", format!("{:.4}  (1: all of it sees open sky; fronts of triangles only)", seen.mesh)),
-        ("under the sides rule", format!("{:.4}", seen.mesh_sides)),
         ("triangles", count(report.triangles)),
         ("never seen", format!("{} ({never:.1} %)", count(seen.never_seen))),
         (
@@ -94,6 +93,9 @@ fn text(report: &MeasureReport, request: &MeasureRequest) -> String {
         ),
         ("time", format!("{} ({} looking)", duration(report.seconds.total), duration(report.seconds.visibility))),
     ];
+    if seen.mesh_sides != seen.mesh {
+        rows.insert(1, ("with backs", format!("{:.4}  (--sides {})", seen.mesh_sides, report.sides)));
+    }
     if let Some(output) = &request.output {
         rows.push(("written", output.display().to_string()));
     }

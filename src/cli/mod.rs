@@ -41,7 +41,7 @@ use flags::GlobalFlags;
 /// Measures how well each triangle of a mesh can be seen from outside, and simplifies it where nobody looks.
 #[derive(Debug, Parser)]
 #[command(name = "outsight", version, propagate_version = false, after_help = help::OUTSIGHT, max_term_width = 100)]
-#[command(subcommand_required = true, arg_required_else_help = true, disable_help_subcommand = true)]
+#[command(subcommand_required = true, arg_required_else_help = true)]
 pub struct Arguments {
     #[command(flatten)]
     global: GlobalFlags,
@@ -99,6 +99,7 @@ pub fn main() -> ExitCode {
 fn run(arguments: &Arguments) -> u8 {
     let console = Console::new(&arguments.global);
     let outcome = guarded(|| {
+        check_names(arguments.global.json)?;
         console.watch_signals()?;
         arguments.global.start_threads()?;
         dispatch(&arguments.command, &console)
@@ -107,6 +108,17 @@ fn run(arguments: &Arguments) -> u8 {
     match outcome {
         Ok(()) => 0,
         Err(failure) => failure::conclude(&failure, &console),
+    }
+}
+
+/// JSON holds text alone: better to refuse a name that is none than to fail when everything is done.
+fn check_names(json: bool) -> outsight::Result<()> {
+    match std::env::args_os().find(|argument| json && argument.to_str().is_none()) {
+        None => Ok(()),
+        Some(name) => Err(outsight::Error::Option {
+            name: "--json",
+            message: format!("{} is not Unicode, which JSON cannot hold; rename it", name.display()),
+        }),
     }
 }
 

@@ -128,14 +128,19 @@ pub fn ending_of(path: &Path) -> String {
 /// The file of level `level` of several: `{}` in the name becomes the number, else `-lod0`, `-lod1`, … stands before
 /// the ending (`part.ply.zst` gives `part-lod0.ply.zst`).
 pub fn level_path(pattern: &Path, level: usize) -> PathBuf {
-    let name = pattern.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-    if name.contains("{}") {
+    let name = pattern.file_name().unwrap_or_default();
+    if let Some(name) = name.to_str().filter(|name| name.contains("{}")) {
         return pattern.with_file_name(name.replace("{}", &level.to_string()));
     }
-    let (base, _) = without_compression(Path::new(&name));
-    let stem = base.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-    let endings = &name[stem.len()..];
-    pattern.with_file_name(format!("{stem}-lod{level}{endings}"))
+    let (base, compressed) = without_compression(Path::new(name));
+    let mut name_of_level = base.file_stem().unwrap_or_default().to_os_string();
+    name_of_level.push(format!("-lod{level}"));
+    let compression = Path::new(name).extension().filter(|_| compressed);
+    for ending in base.extension().into_iter().chain(compression) {
+        name_of_level.push(".");
+        name_of_level.push(ending);
+    }
+    pattern.with_file_name(name_of_level)
 }
 
 #[cfg(test)]

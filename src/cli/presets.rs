@@ -65,6 +65,7 @@ pub fn metric(flags: &CollapseFlags) -> Result<Metric> {
 /// [`Error::Option`] for anything but `keep` under a metric that does not look: nothing would be known to be hidden.
 pub fn hidden(flags: &CollapseFlags, preset: Preset, metric: Metric) -> Result<Hidden> {
     let asked = flags.hidden.map(Hidden::from);
+    let preserves = flags.topology.map(Topology::from) == Some(Topology::Preserve);
     match (metric, asked, preset) {
         (Metric::Quadric, None | Some(Hidden::Keep), _) => Ok(Hidden::Keep),
         (Metric::Quadric, Some(_), _) => Err(Error::Option {
@@ -74,8 +75,9 @@ pub fn hidden(flags: &CollapseFlags, preset: Preset, metric: Metric) -> Result<H
                 .to_owned(),
         }),
         (Metric::Visibility, Some(asked), _) => Ok(asked),
-        (Metric::Visibility, None, Preset::Best) => Ok(Hidden::Delete),
-        (Metric::Visibility, None, Preset::Paper) => Ok(Hidden::Collapse),
+        // Deleting would open what is closed.
+        (Metric::Visibility, None, Preset::Best) if !preserves => Ok(Hidden::Delete),
+        (Metric::Visibility, None, _) => Ok(Hidden::Collapse),
     }
 }
 

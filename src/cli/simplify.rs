@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args};
 use outsight::Error;
-use outsight::pipeline::{LevelRequest, Metric, SimplifyReport, SimplifyRequest, run_simplify};
+use outsight::pipeline::{LevelReport, LevelRequest, Metric, SimplifyReport, SimplifyRequest, run_simplify};
 use outsight::simplify::{SimplifyOptions, Target};
 use serde::Serialize;
 use serde_json::Value;
@@ -34,13 +34,13 @@ pub struct Flags {
     #[arg(long, value_name = "FORMAT")]
     output_format: Option<FormatName>,
     /// Stop at this many triangles
-    #[arg(short, long, value_name = "N", value_parser = values::triangles, group = "size")]
+    #[arg(short, long, value_name = "N", value_parser = values::triangles, allow_negative_numbers = true, group = "size")]
     triangles: Option<usize>,
     /// Stop at this share of the triangles, in (0, 1]
-    #[arg(short, long, value_name = "RATIO", value_parser = values::ratio, group = "size")]
+    #[arg(short, long, value_name = "RATIO", value_parser = values::ratio, allow_negative_numbers = true, group = "size")]
     ratio: Option<f64>,
     /// Stop before this root mean square distance from what is visible, in model units
-    #[arg(short = 'e', long, value_name = "ERROR", value_parser = values::length, group = "size")]
+    #[arg(short = 'e', long, value_name = "ERROR", value_parser = values::length, allow_negative_numbers = true, group = "size")]
     max_error: Option<f64>,
     /// Several results in one run, from large to small, as in 0.5,0.25,5000
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = values::level_size, group = "size")]
@@ -73,6 +73,12 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
     let task = Task::Simplify { resolution: request.measure.resolution.unwrap_or(0) };
     let watch = Watch::new(console, task).writing_mesh(true).deleting_knowingly(flags.collapse.hidden.is_some());
     let report = run_simplify(&request, &watch)?;
+    for level in report.levels.iter().filter(|level| level.stop == "queue_empty") {
+        if let Some(target) = level.target {
+            let (file, reached, wanted) = (level.file.display(), count(level.output), count(target));
+            console.announce(&format!("{file}: {reached} triangles instead of {wanted}: nothing more may collapse"));
+        }
+    }
     let object =
         Object { report: &report, peak_mb: peak_mib(), found: watch.found(), options: in_force::simplify(&request) };
     let to_stdout = !request.levels.iter().any(|level| is_pipe(&level.output));
@@ -90,17 +96,21 @@ fn request(flags: &Flags, console: &Console) -> outsight::Result<SimplifyRequest
         hidden: presets::hidden(&flags.collapse, preset, metric)?,
         visibility_power: presets::visibility_power(&flags.collapse),
         simplify: SimplifyOptions { max_error: flags.max_error, ..presets::simplify_options(&flags.collapse, preset)? },
-        levels: levels(flags),
+        levels: levels(flags)?,
         format: flags.output_format.map(Into::into),
         force: console.global.force,
     })
 }
 
-fn levels(flags: &Flags) -> Vec<LevelRequest> {
+fn levels(flags: &Flags) -> outsight::Result<Vec<LevelRequest>> {
     if flags.lods.is_empty() {
         let count = flags.triangles.map(Target::Triangles);
         let targets = count.into_iter().chain(flags.ratio.map(Target::Ratio)).collect();
-        return vec![LevelRequest { targets, output: flags.output.clone() }];
+        return Ok(vec![LevelRequest { targets, output: flags.output.clone() }]);
+    }
+    if is_pipe(&flags.output) {
+        let message = "standard output holds one mesh, --lods makes several; name a file".to_owned();
+        return Err(Error::Option { name: "--output", message });
     }
     let level = |(number, size): (usize, &LevelSize)| {
         let target = match *size {
@@ -109,7 +119,7 @@ fn levels(flags: &Flags) -> Vec<LevelRequest> {
         };
         LevelRequest { targets: vec![target], output: outputs::level_path(&flags.output, number) }
     };
-    flags.lods.iter().enumerate().map(level).collect()
+    Ok(flags.lods.iter().enumerate().map(level).collect())
 }
 
 fn check_outputs(request: &SimplifyRequest, json: bool) -> outsight::Result<()> {
@@ -125,31 +135,39 @@ fn check_outputs(request: &SimplifyRequest, json: bool) -> outsight::Result<()> 
 }
 
 fn text(report: &SimplifyReport) -> String {
-    let row = |level: &outsight::pipeline::LevelReport| {
+    let row = |level: &LevelReport| {
         vec![
             level.file.display().to_string(),
             count(level.output),
             format!("{:.2} %", 100.0 * level.output as f64 / report.triangles as f64),
             significant(level.error),
-            stop_in_words(level.stop).to_owned(),
+            stop_in_words(level).to_owned(),
         ]
     };
     let rows: Vec<Vec<String>> = report.levels.iter().map(row).collect();
     let seconds = &report.seconds;
     format!(
-        "{}{} triangles in, metric {}, {} ({} looking, {} simplifying)\n",
+        "{}error: largest distance of a collapse from {}, root mean square, in the units of the mesh\n\
+         {} triangles in, metric {}, {} ({} looking, {} making sure of what is hidden, {} simplifying)\n",
         table(&["file", "triangles", "kept", "error", "stopped by"], &rows),
+        if report.metric == "quadric" { "its surface" } else { "surface that can be seen, however little of it" },
         count(report.triangles),
         report.metric,
         duration(seconds.total),
         duration(seconds.visibility),
+        duration(seconds.hidden),
         duration(seconds.simplify),
     )
 }
 
 /// What a `stop` of the report means to its reader.
-fn stop_in_words(stop: &str) -> &str {
-    match stop {
+fn stop_in_words(level: &LevelReport) -> &'static str {
+    /// One collapse takes away this many triangles at most, but for pairs that it cancels.
+    const COLLAPSE: usize = 8;
+    match level.stop {
+        "target" if level.target.is_some_and(|target| level.output + COLLAPSE < target) => {
+            "fewer than that to begin with"
+        }
         "target" => "target reached",
         "error" => "error bound",
         "queue_empty" => "no collapse left",

@@ -86,15 +86,14 @@ impl Gallery {
         }
     }
 
-    /// One picture from the unit direction `toward`, `up` upward, under a light beside the camera.
-    ///
-    /// The picture reaches `half_width` to each side of the centre, in unit-sphere units of the reference.
+    /// One picture under a light beside the camera, grey 0 to 255; `background` is the grey where nothing is hit.
     ///
     /// # Errors
     /// [`crate::Error::Limit`] as [`image_errors`].
-    pub fn picture(&self, toward: DVec3, up: DVec3, width: u32, half_width: f64) -> Result<GreyImage> {
-        let buffers = self.draw(&upright(toward, up, width, half_width))?;
-        Ok(shade(&buffers, buffers.near(), SAMPLES as usize, |hit| self.head_light(hit, toward)))
+    pub fn picture(&self, shot: &Shot, background: f64) -> Result<GreyImage> {
+        let buffers = self.draw(&shot.view())?;
+        let greys = buffers.near().map(|hit| Some(hit.map_or(background, |hit| self.head_light(hit, shot.toward))));
+        Ok(shade(&buffers, greys, SAMPLES as usize, |grey| grey))
     }
 
     /// The same in colour: `colour` gives three channels, 0 to 255, for a hit and |n·d|; the background is white.
@@ -103,17 +102,10 @@ impl Gallery {
     ///
     /// # Errors
     /// [`crate::Error::Limit`] as [`image_errors`].
-    pub fn coloured(
-        &self,
-        toward: DVec3,
-        up: DVec3,
-        width: u32,
-        half_width: f64,
-        colour: impl Fn(Hit, f64) -> [f64; 3],
-    ) -> Result<Vec<u8>> {
-        let buffers = self.draw(&upright(toward, up, width, half_width))?;
+    pub fn coloured(&self, shot: &Shot, colour: impl Fn(Hit, f64) -> [f64; 3]) -> Result<Vec<u8>> {
+        let buffers = self.draw(&shot.view())?;
         let channel = |c: usize| {
-            let hits = buffers.near().map(|hit| Some(hit.map_or(255.0, |h| colour(h, self.cosine(h, toward))[c])));
+            let hits = buffers.near().map(|hit| Some(hit.map_or(255.0, |h| colour(h, self.cosine(h, shot.toward))[c])));
             shade(&buffers, hits, SAMPLES as usize, |value| value).pixels
         };
         let [red, green, blue] = [0, 1, 2].map(channel);
@@ -146,19 +138,35 @@ impl Gallery {
     }
 }
 
-fn upright(toward: DVec3, up: DVec3, width: u32, half_width: f64) -> View {
-    View::upright(toward, up, Window { width: SAMPLES * width, half_width })
+/// A picture to take.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shot {
+    /// Unit vector from the object toward the camera.
+    pub toward: DVec3,
+    /// Upward in the picture.
+    pub up: DVec3,
+    /// Pixels along the side.
+    pub width: u32,
+    /// How far the picture reaches to each side of the centre, in unit-sphere units of the reference.
+    pub half_width: f64,
 }
 
-/// The half width at which a picture of `mesh` from `toward` just holds it, with a narrow margin; unit-sphere units.
-#[must_use]
-pub fn fitting_half_width(mesh: &TriMesh, toward: DVec3, up: DVec3) -> f64 {
-    const MARGIN: f64 = 1.05;
-    let frame = Frame::of(mesh);
-    let view = upright(toward, up, 1, 1.0);
-    let corners = mesh.triangles().iter().flatten().map(|&v| frame.to_unit(mesh.positions()[v as usize]));
-    let reach = corners.map(|p| p.dot(view.right).abs().max(p.dot(view.up).abs())).fold(0.0, f64::max);
-    MARGIN * reach
+impl Shot {
+    /// The shot from `toward` that just holds `mesh`, with a narrow margin.
+    #[must_use]
+    pub fn fitting(mesh: &TriMesh, toward: DVec3, up: DVec3, width: u32) -> Self {
+        const MARGIN: f64 = 1.05;
+        let frame = Frame::of(mesh);
+        let view = Self { toward, up, width: 1, half_width: 1.0 }.view();
+        let corners = mesh.triangles().iter().flatten().map(|&v| frame.to_unit(mesh.positions()[v as usize]));
+        let reach = corners.map(|p| p.dot(view.right).abs().max(p.dot(view.up).abs())).fold(0.0, f64::max);
+        Self { toward, up, width, half_width: MARGIN * reach }
+    }
+
+    fn view(&self) -> View {
+        let window = Window { width: SAMPLES * self.width, half_width: self.half_width };
+        View::upright(self.toward, self.up, window)
+    }
 }
 
 #[derive(Debug, Clone, Copy, Default)]

@@ -8,4 +8,4 @@ mod image;
 mod nearest;
 mod sample;
 
-pub use image::{Gallery, ImageError, fitting_half_width, image_errors};
+pub use image::{Gallery, ImageError, Shot, image_errors};

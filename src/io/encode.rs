@@ -208,13 +208,24 @@ fn write_stl(output: &mut dyn Write, mesh: &TriMesh) -> io::Result<()> {
     Ok(())
 }
 
+/// Below this the digits of 32-bit numbers run out.
+const SMALLEST_IN_F32: f64 = 1e-30;
+
 fn check_fits_f32(path: &Path, mesh: &TriMesh) -> Result<()> {
+    let largest = mesh.positions().iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+    if largest < SMALLEST_IN_F32 {
+        let message = format!("a mesh within {largest:e} of 0 vanishes in the 32-bit numbers of STL; write .ply");
+        return Err(Error::Write { path: path.to_owned(), message });
+    }
     let too_large = |p: &&DVec3| !p.as_vec3().is_finite();
     match mesh.positions().iter().find(too_large) {
         None => Ok(()),
         Some(p) => Err(Error::Write {
             path: path.to_owned(),
-            message: format!("a vertex at {p} is beyond the 32-bit numbers of STL; write .ply"),
+            message: format!(
+                "a vertex at {:e}, {:e}, {:e} is beyond the 32-bit numbers of STL; write .ply",
+                p.x, p.y, p.z
+            ),
         }),
     }
 }

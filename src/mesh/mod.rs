@@ -75,6 +75,15 @@ pub enum MeshError {
         /// Triangles that were set aside as zero-area or repeating a vertex.
         set_aside: usize,
     },
+    /// Every triangle is too small or too thin, against the whole, to be drawn.
+    #[error(
+        "all {triangles} triangles are smaller than 1e-14 of the squared radius around them; is one vertex far away, or \
+         the mesh a line?"
+    )]
+    NothingToSee {
+        /// Triangles there are.
+        triangles: usize,
+    },
     /// More than [`MAX_TRIANGLES`] triangles or `u32::MAX` vertices.
     #[error("{vertices} vertices and {triangles} triangles are more than the 2147483647 that Outsight can number")]
     TooMany {

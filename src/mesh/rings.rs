@@ -37,16 +37,15 @@ impl VertexTriangles {
         &self.triangles[self.starts[v] as usize..self.starts[v + 1] as usize]
     }
 
-    /// The triangles that share a vertex with any of `set` and are not in it; both sorted.
+    /// The triangles that share a vertex with any of `triangles`, these included; sorted.
     ///
-    /// `set` must be sorted.
+    /// Of a vertex with more than `most` triangles only the first `most` count.
     #[must_use]
-    pub fn next_ring(&self, mesh: &TriMesh, set: &[u32]) -> Vec<u32> {
-        let corners = set.iter().flat_map(|&t| mesh.triangles()[t as usize]);
-        let mut ring: Vec<u32> = corners.flat_map(|v| self.around(v)).copied().collect();
-        ring.sort_unstable();
-        ring.dedup();
-        ring.retain(|t| set.binary_search(t).is_err());
-        ring
+    pub fn around_all(&self, mesh: &TriMesh, triangles: &[u32], most: usize) -> Vec<u32> {
+        let corners = triangles.iter().flat_map(|&t| mesh.triangles()[t as usize]);
+        let mut around: Vec<u32> = corners.flat_map(|v| self.around(v).iter().take(most)).copied().collect();
+        around.sort_unstable();
+        around.dedup();
+        around
     }
 }

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::error::Result;
 use crate::eval::geometric::{GeometricOptions, SampleCount, geometric_error};
-use crate::eval::{Gallery, ImageError, fitting_half_width, image_errors};
+use crate::eval::{Gallery, ImageError, Shot, image_errors};
 use crate::io::{self, ReadOptions};
 use crate::mesh::TriMesh;
 use crate::pipeline::Observer;
@@ -115,34 +115,47 @@ fn contact_sheet(
     request: &CompareRequest,
 ) -> Result<crate::report::picture::Picture> {
     let up = DVec3::from_array(request.up);
-    let directions = views_around(up);
-    let pictures = |mesh: &TriMesh| -> Result<Vec<GreyImage>> {
-        let gallery = Gallery::new(mesh, reference);
-        let reach = |toward: DVec3| fitting_half_width(reference, toward, up);
-        directions.iter().map(|&toward| gallery.picture(toward, up, PICTURE_WIDTH, reach(toward))).collect()
-    };
-    let original = pictures(reference)?;
-    let others: Vec<Vec<GreyImage>> = tests.iter().map(pictures).collect::<Result<_>>()?;
+    let shots = views_around(up).map(|toward| Shot::fitting(reference, toward, up, PICTURE_WIDTH));
+    let original = Sheet::of(reference, reference, &shots)?;
+    let others: Vec<Sheet> = tests.iter().map(|test| Sheet::of(test, reference, &shots)).collect::<Result<_>>()?;
     let name = |path: &PathBuf| path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
     let mut columns = vec![Column {
         heading: name(&request.reference),
         caption: mesh_caption(reference.triangle_count(), None),
-        images: Images::Shaded(original.iter().map(|image| image.pixels.as_slice()).collect()),
+        images: original.shown(),
     }];
-    for (((path, mesh), error), images) in request.tests.iter().zip(tests).zip(errors).zip(&others) {
-        let pairs = original.iter().zip(images).map(|(a, b)| [a.pixels.as_slice(), b.pixels.as_slice()]);
-        columns.push(Column {
-            heading: name(path),
-            caption: mesh_caption(mesh.triangle_count(), Some(error.image_rmse)),
-            images: Images::Shaded(images.iter().map(|image| image.pixels.as_slice()).collect()),
-        });
-        columns.push(Column {
-            heading: "difference".to_owned(),
-            caption: String::new(),
-            images: Images::Difference(pairs.collect()),
-        });
+    for (((path, mesh), error), pictures) in request.tests.iter().zip(tests).zip(errors).zip(&others) {
+        let (heading, caption) = (name(path), mesh_caption(mesh.triangle_count(), Some(error.image_rmse)));
+        columns.push(Column { heading, caption, images: pictures.shown() });
+        let (heading, caption) = ("difference".to_owned(), String::new());
+        columns.push(Column { heading, caption, images: original.difference(pictures) });
     }
     ContactSheet { image_size: [PICTURE_WIDTH; 2], columns, ..ContactSheet::default() }.draw()
+}
+
+/// The pictures of one mesh: over white to be looked at, over black, as the image error sees them, to be compared.
+struct Sheet {
+    white: Vec<GreyImage>,
+    black: Vec<GreyImage>,
+}
+
+impl Sheet {
+    fn of(mesh: &TriMesh, reference: &TriMesh, shots: &[Shot]) -> Result<Self> {
+        let gallery = Gallery::new(mesh, reference);
+        let over = |background: f64| -> Result<Vec<GreyImage>> {
+            shots.iter().map(|shot| gallery.picture(shot, background)).collect()
+        };
+        Ok(Self { white: over(255.0)?, black: over(0.0)? })
+    }
+
+    fn shown(&self) -> Images<'_> {
+        Images::Shaded(self.white.iter().map(|image| image.pixels.as_slice()).collect())
+    }
+
+    fn difference<'a>(&'a self, other: &'a Self) -> Images<'a> {
+        let pairs = self.black.iter().zip(&other.black);
+        Images::Difference(pairs.map(|(a, b)| [a.pixels.as_slice(), b.pixels.as_slice()]).collect())
+    }
 }
 
 /// Three views for people: from the front right above, from the back left above, from below.

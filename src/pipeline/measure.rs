@@ -38,12 +38,12 @@ pub struct MeasureReport {
     pub backend: &'static str,
     /// What was counted.
     pub estimator: &'static str,
-    /// Which side of a triangle made its visibility.
-    pub sides: &'static str,
     /// The numbers.
     pub visibility: VisibilitySummary,
     /// Where the time went.
     pub seconds: MeasureSeconds,
+    /// Which side of a triangle made its visibility.
+    pub sides: &'static str,
 }
 
 /// Visibility of a whole mesh.

@@ -3,7 +3,7 @@ use std::path::PathBuf;
 use glam::DVec3;
 
 use crate::error::{Error, Result};
-use crate::eval::{Gallery, fitting_half_width};
+use crate::eval::{Gallery, Shot};
 use crate::io::{self, ReadOptions};
 use crate::mesh::TriMesh;
 use crate::pipeline::Observer;
@@ -62,29 +62,30 @@ pub fn render_file(request: &RenderRequest, observer: &dyn Observer) -> Result<(
     }
     let loaded = io::read(&request.input, &request.read)?;
     observer.mesh_read(&request.input, &loaded)?;
+    let shot = Shot::fitting(&loaded.mesh, toward, up, request.size);
     let picture = match request.style {
-        Style::Flat => flat(&loaded.mesh, toward, up, request)?,
-        Style::Heat => heat(&loaded.mesh, toward, up, request, observer)?,
+        Style::Flat => flat(&loaded.mesh, &shot)?,
+        Style::Heat => heat(&loaded.mesh, &shot, request, observer)?,
     };
+    observer.check()?;
     io::write_atomic(&request.output, request.force, |writer| picture.write_png(writer))
 }
 
-fn flat(mesh: &TriMesh, toward: DVec3, up: DVec3, request: &RenderRequest) -> Result<Picture> {
-    let image = Gallery::new(mesh, mesh).picture(toward, up, request.size, fitting_half_width(mesh, toward, up))?;
-    let on_white = |grey: f32| if grey == 0.0 { [255; 3] } else { [grey as u8; 3] };
-    Picture::from_values(request.size, request.size, &image.pixels, on_white)
+const WHITE: f64 = 255.0;
+
+fn flat(mesh: &TriMesh, shot: &Shot) -> Result<Picture> {
+    let image = Gallery::new(mesh, mesh).picture(shot, WHITE)?;
+    Picture::from_grey(shot.width, shot.width, &image.pixels)
 }
 
 /// Heat colours, darkened by half where the surface turns away, so that its shape shows.
-fn heat(mesh: &TriMesh, toward: DVec3, up: DVec3, request: &RenderRequest, observer: &dyn Observer) -> Result<Picture> {
+fn heat(mesh: &TriMesh, shot: &Shot, request: &RenderRequest, observer: &dyn Observer) -> Result<Picture> {
     let visibility = visibility::measure(mesh, &request.measure, observer)?;
-    let gallery = Gallery::new(mesh, mesh);
-    let picture =
-        gallery.coloured(toward, up, request.size, fitting_half_width(mesh, toward, up), |hit, brightness| {
-            let colour = request.colour_map.colour(visibility.per_triangle()[hit.triangle.0 as usize]);
-            colour.map(|channel| f64::from(channel) * (0.5 + 0.5 * brightness))
-        })?;
-    let picture = Picture::from_rgb(request.size, request.size, picture)?;
+    let picture = Gallery::new(mesh, mesh).coloured(shot, |hit, brightness| {
+        let colour = request.colour_map.colour(visibility.per_triangle()[hit.triangle.0 as usize]);
+        colour.map(|channel| f64::from(channel) * (0.5 + 0.5 * brightness))
+    })?;
+    let picture = Picture::from_rgb(shot.width, shot.width, picture)?;
     Ok(if request.legend { with_legend(&picture, request.colour_map, "visibility V") } else { picture })
 }
 

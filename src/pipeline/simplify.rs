@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::io::{Format, ReadOptions};
 use crate::mesh::{Remainder, TriMesh, compose_maps};
 use crate::pipeline::Observer;
-use crate::simplify::{Level, SimplifyOptions, Stop, Target, TopologyChange, simplify};
+use crate::simplify::{Level, SimplifyOptions, Stop, Target, Topology, TopologyChange, simplify};
 use crate::visibility::{Hidden, Look, MeasureOptions, importance};
 
 /// What orders the collapses.
@@ -68,6 +68,14 @@ impl SimplifyRequest {
     /// Checks what can be checked before the mesh is read.
     pub(super) fn check(&self) -> Result<()> {
         self.measure.check()?;
+        if self.metric == Metric::Visibility
+            && self.hidden == Hidden::Delete
+            && self.simplify.topology == Topology::Preserve
+        {
+            let message =
+                "delete opens what is closed, which --topology preserve forbids; use --hidden collapse".to_owned();
+            return Err(Error::Option { name: "--hidden", message });
+        }
         if self.levels.len() > 1 && self.levels.iter().any(|level| level.targets.is_empty()) {
             let message = "several levels need a target each; an error bound alone makes one".to_owned();
             return Err(Error::Option { name: "--lods", message });
@@ -75,6 +83,11 @@ impl SimplifyRequest {
         // The targets are checked against 1 triangle here, and again with the mesh's own count.
         let targets: Vec<Target> = self.levels.iter().flat_map(|level| level.targets.iter().copied()).collect();
         SimplifyOptions { targets, ..self.simplify.clone() }.check()
+    }
+
+    /// Checks that each level is at most as large as the one before, before any long work.
+    pub(super) fn check_levels(&self, given: usize) -> Result<()> {
+        SimplifyOptions { targets: self.targets(given), ..self.simplify.clone() }.counts(given).map(drop)
     }
 
     /// One triangle count per level, of `given` triangles; none where only an error bound ends the run.
@@ -115,13 +128,17 @@ pub fn simplify_seen(
     let Some(seen) = seen else {
         return Ok(Simplified { levels: simplify(&mesh, Some(&weights), &options, observer)?, hidden_deleted: 0 });
     };
+    let deleted = TopologyChange::between(&mesh, &seen.mesh);
     drop(mesh);
     let hidden_deleted = given - seen.mesh.triangle_count();
     observer.hidden_deleted(hidden_deleted, given)?;
     let weights: Vec<f64> = weights.iter().zip(&look.hidden).filter(|(_, hidden)| !**hidden).map(|(&w, _)| w).collect();
     drop(look);
     let mut levels = simplify(&seen.mesh, Some(&weights), &options, observer)?;
-    levels.iter_mut().for_each(|level| start_from_whole(level, &seen));
+    for level in &mut levels {
+        start_from_whole(level, &seen);
+        level.topology = level.topology.after(deleted);
+    }
     Ok(Simplified { levels, hidden_deleted })
 }
 
@@ -140,10 +157,10 @@ pub struct SimplifyReport {
     pub triangles: usize,
     /// What ordered the collapses.
     pub metric: &'static str,
-    /// Hidden triangles that were removed before simplifying.
-    pub hidden_deleted: usize,
     /// Where the time went.
     pub seconds: SimplifySeconds,
+    /// Hidden triangles that were removed before simplifying.
+    pub hidden_deleted: usize,
 }
 
 /// One level of detail, as made.
@@ -159,7 +176,7 @@ pub struct LevelReport {
     pub error: f64,
     /// The file.
     pub file: PathBuf,
-    /// What changed in the topology, hidden triangles that were removed not counted.
+    /// What changed in the topology since the mesh was read.
     pub topology: TopologyChange,
 }
 
@@ -168,7 +185,7 @@ pub struct LevelReport {
 pub struct SimplifySeconds {
     /// Reading and checking the file.
     pub read: f64,
-    /// Measuring visibility, hidden triangles included.
+    /// Measuring visibility.
     pub visibility: f64,
     /// Collapsing.
     pub simplify: f64,
@@ -176,6 +193,8 @@ pub struct SimplifySeconds {
     pub write: f64,
     /// All of it.
     pub total: f64,
+    /// Looking again, to make sure of what is hidden.
+    pub hidden: f64,
 }
 
 impl SimplifyReport {
@@ -197,8 +216,8 @@ impl SimplifyReport {
             levels: simplified.levels.iter().zip(&request.levels).map(level).collect(),
             triangles,
             metric: request.metric.name(),
-            hidden_deleted: simplified.hidden_deleted,
             seconds,
+            hidden_deleted: simplified.hidden_deleted,
         }
     }
 }

@@ -96,6 +96,37 @@ pub struct TopologyChange {
     pub euler_characteristic: i64,
 }
 
+impl TopologyChange {
+    /// What taking triangles out of `whole` to leave `part` changed.
+    #[must_use]
+    pub fn between(whole: &TriMesh, part: &TriMesh) -> Self {
+        let [before, after] = [whole, part].map(|mesh| {
+            let lists = CornerLists::of(mesh);
+            TopologyCounts::of(mesh, &lists, &Edges::of(mesh, &lists))
+        });
+        let more = |after: usize, before: usize| after as i64 - before as i64;
+        Self {
+            cancelled_pairs: 0,
+            non_manifold_edges: more(after.non_manifold_edges, before.non_manifold_edges),
+            components: more(after.components, before.components),
+            boundary_edges: more(after.boundary_edges, before.boundary_edges),
+            euler_characteristic: after.euler_characteristic - before.euler_characteristic,
+        }
+    }
+
+    /// This change and an earlier one together.
+    #[must_use]
+    pub fn after(self, earlier: Self) -> Self {
+        Self {
+            cancelled_pairs: self.cancelled_pairs + earlier.cancelled_pairs,
+            non_manifold_edges: self.non_manifold_edges + earlier.non_manifold_edges,
+            components: self.components + earlier.components,
+            boundary_edges: self.boundary_edges + earlier.boundary_edges,
+            euler_characteristic: self.euler_characteristic + earlier.euler_characteristic,
+        }
+    }
+}
+
 /// One level of detail.
 #[derive(Debug, Clone)]
 pub struct Level {

@@ -105,7 +105,7 @@ impl SimplifyOptions {
     ///
     /// # Errors
     /// [`Error::Option`] where one target asks for more than the one before it.
-    pub(super) fn counts(&self, triangle_count: usize) -> Result<Vec<usize>> {
+    pub fn counts(&self, triangle_count: usize) -> Result<Vec<usize>> {
         let counts: Vec<usize> = self.targets.iter().map(|target| target.count(triangle_count)).collect();
         match counts.windows(2).find(|pair| pair[1] > pair[0]) {
             None => Ok(counts),

@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::mesh::TriMesh;
 use crate::progress::Progress;
 use crate::raster::Side;
-use crate::visibility::{CoverageCounts, MeasureOptions, Visibility};
+use crate::visibility::{CoverageCounts, Hidden, MeasureOptions, Visibility};
 
 /// Share of the covered pixels that may show a marked triangle in the last look. That look then takes back what it saw,
 /// so the share that is left is smaller; 1e-4 is promised.
@@ -25,7 +25,7 @@ const MAX_LOOKS: u64 = 16;
 ///
 /// Every triangle that the measurement did not see is marked at first. Then come further looks, each from other
 /// directions and at twice the resolution, that take back what they see, until a look finds at most one covered pixel
-/// in 20,000 showing a marked triangle. (Guarding the marks by rings of unseen neighbours instead keeps half of what
+/// in 20,000 showing a marked triangle. If no look in 16 does, nothing is marked. (Guarding the marks by rings of unseen neighbours instead keeps half of what
 /// could go, and is no safer on thin slits, where neighbours are seen from the same few directions.)
 ///
 /// # Errors
@@ -41,16 +41,37 @@ pub fn hidden_triangles<B: ItemBuffers>(
     let window = Window::around_sphere((2 * visibility.resolution()).min(16384));
     for look in 0..MAX_LOOKS {
         if !hidden.iter().any(|&h| h) {
-            break;
+            return Ok(hidden);
         }
         let cameras = cameras_of(look)?;
         let triangles = mesh.triangle_count();
         let counts = CoverageCounts::of(backend, triangles, &cameras, window, options.memory_limit, progress)?;
         if take_back(&counts, &mut hidden) <= TOLERATED_SHARE {
-            break;
+            return Ok(hidden);
         }
     }
+    hidden.fill(false);
     Ok(hidden)
+}
+
+impl Hidden {
+    /// The triangles to remove before simplifying, one entry per triangle; see [`hidden_triangles`].
+    ///
+    /// # Errors
+    /// As [`super::measure`].
+    pub fn marks<B: ItemBuffers>(
+        self,
+        backend: &B,
+        mesh: &TriMesh,
+        visibility: &Visibility,
+        options: &MeasureOptions,
+        progress: &dyn Progress,
+    ) -> Result<Vec<bool>> {
+        match self {
+            Self::Delete => hidden_triangles(backend, mesh, visibility, options, progress),
+            Self::Keep | Self::Collapse => Ok(vec![false; mesh.triangle_count()]),
+        }
+    }
 }
 
 /// Cameras turned at random, differently for each look.

@@ -20,7 +20,7 @@ use rayon::prelude::*;
 
 use crate::backend::ItemBuffers;
 use crate::camera::{CameraSphere, Frame, Window};
-use crate::error::Result;
+use crate::error::{Error, MeshError, Result};
 use crate::mesh::{TriMesh, TriangleId};
 use crate::progress::Progress;
 use crate::raster::Scene;
@@ -97,6 +97,7 @@ impl Visibility {
 /// Looks at `mesh` from all cameras.
 ///
 /// # Errors
+/// [`crate::Error::Mesh`] if no triangle is large enough to be seen at all,
 /// [`crate::Error::Option`] for a resolution or a number of cameras outside its range, [`crate::Error::Unavailable`] for
 /// a backend or estimator that is not there, [`crate::Error::Limit`] if it does not fit the memory limit,
 /// [`crate::Error::Cancelled`].
@@ -154,10 +155,7 @@ pub struct Look {
 pub fn look(mesh: &TriMesh, options: &MeasureOptions, hidden: Hidden, progress: &dyn Progress) -> Result<Look> {
     let scene = scene_of(mesh);
     let visibility = measure_scene(&scene, mesh, options, progress)?;
-    let hidden = match hidden {
-        Hidden::Delete => hidden_triangles(&scene, mesh, &visibility, options, progress)?,
-        Hidden::Keep | Hidden::Collapse => vec![false; mesh.triangle_count()],
-    };
+    let hidden = hidden.marks(&scene, mesh, &visibility, options, progress)?;
     Ok(Look { visibility, hidden })
 }
 
@@ -177,8 +175,12 @@ pub fn measure_with<B: ItemBuffers>(
     let window = Window::around_sphere(options.resolution_for(mesh.triangle_count()));
     let counts = CoverageCounts::of(backend, mesh.triangle_count(), cameras, window, options.memory_limit, progress)?;
     progress.check()?;
+    if counts.covered() == 0 {
+        let source = MeshError::NothingToSee { triangles: mesh.triangle_count() };
+        return Err(Error::Mesh { place: "looking".to_owned(), source });
+    }
     let shapes = Shapes::of(mesh, &Frame::of(mesh));
-    Ok(from_coverage(&counts, mesh, &shapes, cameras, options.sides))
+    from_coverage(&counts, mesh, &shapes, cameras, options.sides, progress)
 }
 
 /// Areas (unit-sphere units) and unit normals of all triangles; area 0 marks degenerate ones.
@@ -208,15 +210,16 @@ fn from_coverage(
     shapes: &Shapes,
     cameras: &CameraSphere,
     sides: Sides,
-) -> Visibility {
+    progress: &dyn Progress,
+) -> Result<Visibility> {
     let (front, back) = counts.visibilities(shapes, cameras);
     debug_assert!(counts.identity_holds(&front, &back, shapes, cameras));
-    let pools = pool::pool_small(mesh, shapes, counts.smallest_area(cameras), [&front, &back]);
+    let pools = pool::pool_small(mesh, shapes, counts.smallest_area(cameras), [&front, &back], progress)?;
     let value = |t: usize| sides.combine(pools.front(t, &front), pools.back(t, &back));
     let per_triangle = (0..front.len()).map(|t| value(t).clamp(0.0, 1.0)).collect();
     let seen = (0..front.len()).map(|t| pools.front(t, &front) > 0.0 || pools.back(t, &back) > 0.0).collect();
     let raw_sides = |t: usize| sides.combine(front[t], back[t]);
-    Visibility {
+    Ok(Visibility {
         of_mesh: area_mean(&shapes.areas, |t| front[t]),
         of_mesh_sides: area_mean(&shapes.areas, raw_sides),
         per_triangle,
@@ -225,7 +228,7 @@ fn from_coverage(
         cameras: cameras.count(),
         front,
         back,
-    }
+    })
 }
 
 /// Mean of a value over the surface; sums run in index order.

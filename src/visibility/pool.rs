@@ -1,6 +1,8 @@
 use rayon::prelude::*;
 
+use crate::error::Result;
 use crate::mesh::{TriMesh, VertexTriangles};
+use crate::progress::Progress;
 use crate::visibility::Shapes;
 
 /// Visibility of triangles too small to be counted alone, taken over their neighbourhood.
@@ -30,37 +32,51 @@ impl Pools {
 const MIN_COSINE: f64 = 0.5;
 
 /// A neighbourhood stops growing here even if it is still too small: beyond, it no longer tells about the triangle.
-const MAX_TRIANGLES: usize = 512;
+const MAX_TRIANGLES: usize = 256;
 
 /// Pools every triangle below `smallest_area` over the smallest ring neighbourhood that reaches it.
-pub(super) fn pool_small(mesh: &TriMesh, shapes: &Shapes, smallest_area: f64, sides: [&[f64]; 2]) -> Pools {
+///
+/// # Errors
+/// [`crate::Error::Cancelled`].
+pub(super) fn pool_small(
+    mesh: &TriMesh,
+    shapes: &Shapes,
+    smallest_area: f64,
+    sides: [&[f64]; 2],
+    progress: &dyn Progress,
+) -> Result<Pools> {
     let is_small = |t: usize| shapes.areas[t] > 0.0 && shapes.areas[t] < smallest_area;
     let triangles = 0..mesh.triangle_count();
     if !triangles.clone().any(is_small) {
-        return Pools { values: Vec::new() };
+        return Ok(Pools { values: Vec::new() });
     }
     let neighbours = VertexTriangles::of(mesh);
     let pooled = |t: usize| {
-        is_small(t).then(|| {
+        // Far too small triangles need large neighbourhoods; someone may not want to wait for them.
+        (is_small(t) && !progress.is_cancelled()).then(|| {
             let set = neighbourhood(t as u32, mesh, shapes, &neighbours, smallest_area);
             (mean(&set, shapes, sides[0]), mean(&set, shapes, sides[1]))
         })
     };
-    Pools { values: triangles.into_par_iter().map(pooled).collect() }
+    let values = triangles.into_par_iter().map(pooled).collect();
+    progress.check()?;
+    Ok(Pools { values })
 }
 
+/// Triangles around `t`, sorted, ring by ring until their area suffices.
 fn neighbourhood(t: u32, mesh: &TriMesh, shapes: &Shapes, neighbours: &VertexTriangles, smallest: f64) -> Vec<u32> {
     let normal = shapes.normal(t as usize);
     let mut set = vec![t];
+    let mut ring = vec![t];
     let mut area = shapes.areas[t as usize];
     while area < smallest && set.len() < MAX_TRIANGLES {
-        let mut ring = neighbours.next_ring(mesh, &set);
-        ring.retain(|&n| shapes.normal(n as usize).dot(normal) >= MIN_COSINE);
+        ring = neighbours.around_all(mesh, &ring, MAX_TRIANGLES);
+        ring.retain(|&n| set.binary_search(&n).is_err() && shapes.normal(n as usize).dot(normal) >= MIN_COSINE);
         if ring.is_empty() {
             break;
         }
         area += ring.iter().map(|&n| shapes.areas[n as usize]).sum::<f64>();
-        set.extend(ring);
+        set.extend(&ring);
         set.sort_unstable();
     }
     set
