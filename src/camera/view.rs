@@ -55,14 +55,14 @@ impl View {
     #[must_use]
     pub fn toward(toward: DVec3, window: Window) -> Self {
         let [x, y, z] = toward.abs().to_array();
-        let helper = if x <= y && x <= z {
+        let axis = if x <= y && x <= z {
             DVec3::X
         } else if y <= z {
             DVec3::Y
         } else {
             DVec3::Z
         };
-        Self::with_right(helper.cross(toward), toward, window)
+        Self::with_right(axis.cross(toward), toward, window)
     }
 
     /// The view from the unit direction `toward` with `up` upward in the image; any other up where the two are parallel.

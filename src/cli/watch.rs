@@ -61,7 +61,7 @@ impl<'a> Watch<'a> {
         Self { writes_mesh, ..self }
     }
 
-    /// The user asked for hidden triangles to be deleted, or it is the default.
+    /// The user spelled out that hidden triangles are to be deleted, or knows it from what the command says.
     pub fn deleting_knowingly(self, deletes_knowingly: bool) -> Self {
         Self { deletes_knowingly, ..self }
     }
