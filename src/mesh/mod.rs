@@ -19,10 +19,6 @@ use glam::DVec3;
 
 use crate::geom::{self, Aabb};
 
-/// Number of a vertex in its mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct VertexId(pub u32);
-
 /// Number of a triangle in its mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct TriangleId(pub u32);

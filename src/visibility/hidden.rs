@@ -21,16 +21,8 @@ const FURTHER_CAMERAS: usize = 258;
 /// An assembly seen through many narrow slits took 8.
 const MAX_LOOKS: u64 = 16;
 
-/// Marks the triangles that can go without anyone seeing it, one entry per triangle of the measured mesh.
-///
-/// Every triangle that the measurement did not see is marked at first. Then come further looks, each from other
-/// directions and at twice the resolution, that take back what they see, until a look finds at most one covered pixel
-/// in 20,000 showing a marked triangle. If no look in 16 does, nothing is marked. (Guarding the marks by rings of unseen neighbours instead keeps half of what
-/// could go, and is no safer on thin slits, where neighbours are seen from the same few directions.)
-///
-/// # Errors
-/// As [`super::measure`].
-pub fn hidden_triangles<B: ItemBuffers>(
+/// Looks again, from other directions and at twice the resolution, until a look is satisfied; see [`Hidden::marks`].
+fn hidden_triangles<B: ItemBuffers>(
     backend: &B,
     mesh: &TriMesh,
     visibility: &Visibility,
@@ -55,7 +47,14 @@ pub fn hidden_triangles<B: ItemBuffers>(
 }
 
 impl Hidden {
-    /// The triangles to remove before simplifying, one entry per triangle; see [`hidden_triangles`].
+    /// Marks the triangles to remove before simplifying, one entry per triangle of the measured mesh; only
+    /// [`Hidden::Delete`] marks any.
+    ///
+    /// Every triangle that the measurement did not see is marked at first. Then come further looks, each from other
+    /// directions and at twice the resolution, that take back what they see, until a look finds at most one covered
+    /// pixel in 20,000 showing a marked triangle. If no look in 16 does, nothing is marked. (Guarding the marks by rings
+    /// of unseen neighbours instead keeps half of what could go, and is no safer on thin slits, where neighbours are
+    /// seen from the same few directions.)
     ///
     /// # Errors
     /// As [`super::measure`].

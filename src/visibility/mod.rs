@@ -11,7 +11,6 @@ mod options;
 mod pool;
 
 pub use coverage::CoverageCounts;
-pub use hidden::hidden_triangles;
 pub use importance::{Hidden, importance};
 pub use options::{Estimator, MeasureOptions, Sides};
 
