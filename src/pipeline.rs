@@ -26,7 +26,7 @@ use std::time::Instant;
 use crate::error::Result;
 use crate::io::{self, Loaded, TriangleAttributes, WriteOptions};
 use crate::progress::{CancelFlag, Progress, Silent};
-use crate::visibility::{self, Look};
+use crate::visibility::{Look, Subject};
 
 /// Reads a mesh, looks at it, simplifies it where nobody looks, writes every level.
 ///
@@ -44,10 +44,10 @@ pub fn run_simplify(request: &SimplifyRequest, observer: &dyn Observer) -> Resul
     let mut seconds = SimplifySeconds { read: clock.lap(), ..SimplifySeconds::default() };
     let look = match request.metric {
         Metric::Visibility => {
-            let scene = visibility::scene_of(&mesh);
-            let visibility = visibility::measure_scene(&scene, &mesh, &request.measure, observer)?;
+            let subject = Subject::new(&mesh, request.measure.backend)?;
+            let visibility = subject.measure(&request.measure, observer)?;
             seconds.visibility = clock.lap();
-            let hidden = request.hidden.marks(&scene, &mesh, &visibility, &request.measure, observer)?;
+            let hidden = request.hidden.marks(&subject, &visibility, &request.measure, observer)?;
             seconds.hidden = clock.lap();
             Some(Look { visibility, hidden })
         }

@@ -10,12 +10,13 @@ use std::f64::consts::PI;
 
 use approx::assert_abs_diff_eq;
 use glam::{DMat3, DVec3};
+use outsight::backend::BackendKind;
 use outsight::camera::{CameraSphere, CameraWeights};
 use outsight::geom::triangle_area;
 use outsight::mesh::shapes::{self, Tagged};
 use outsight::mesh::{TriMesh, TriangleId};
 use outsight::progress::Silent;
-use outsight::visibility::{MeasureOptions, Sides, Visibility, measure, measure_scene, measure_with, scene_of};
+use outsight::visibility::{MeasureOptions, Sides, Subject, Visibility, measure};
 
 /// Mean over a surface, 258 area-weighted cameras: the quadrature error of the camera pattern.
 const CAMERAS: f64 = 0.01;
@@ -27,7 +28,7 @@ fn look(mesh: &TriMesh) -> Visibility {
     let rotation = DMat3::from_rotation_z(0.4) * DMat3::from_rotation_y(1.1) * DMat3::from_rotation_x(0.7);
     let cameras = CameraSphere::octahedral(258, CameraWeights::Area).unwrap().rotated(rotation);
     let options = MeasureOptions { sides: Sides::One, ..MeasureOptions::default() };
-    measure_with(&scene_of(mesh), mesh, &cameras, &options, &Silent).unwrap()
+    Subject::new(mesh, BackendKind::Raster).unwrap().measure_from(&cameras, &options, None, &Silent).unwrap()
 }
 
 /// Area-weighted mean of the front side's visibility over some triangles.
@@ -214,9 +215,9 @@ fn t12_t13_t14_torus_nested_spheres_sheet() {
 fn t12_cauchy_links_visibility_to_silhouettes() {
     let ball = shapes::bumpy_sphere(6, 0.15);
     let options = |resolution| MeasureOptions { resolution: Some(resolution), ..MeasureOptions::default() };
-    let scene = scene_of(&ball);
-    let visibility = measure_scene(&scene, &ball, &options(480), &Silent).unwrap();
-    let fine = measure_scene(&scene, &ball, &options(960), &Silent).unwrap();
+    let subject = Subject::new(&ball, BackendKind::Raster).unwrap();
+    let visibility = subject.measure(&options(480), &Silent).unwrap();
+    let fine = subject.measure(&options(960), &Silent).unwrap();
     // The fine run's pixels are the other source: its unclamped V times area is its covered area.
     assert_abs_diff_eq!(visibility.of_mesh(), fine.of_mesh(), epsilon = 2e-3);
     assert!(visibility.of_mesh() < 0.99, "a bumpy ball hides some of itself");

@@ -6,6 +6,7 @@ use std::sync::LazyLock;
 
 use assert_cmd::Command;
 use glam::{DMat3, DQuat};
+use outsight::backend::{BackendKind, Workload};
 use outsight::camera::{CameraSphere, CameraWeights, Window};
 use outsight::eval::image_errors;
 use outsight::geom::triangle_area;
@@ -14,7 +15,7 @@ use outsight::mesh::{TriMesh, TriangleId};
 use outsight::progress::Silent;
 use outsight::raster::Side;
 use outsight::simplify::{SimplifyOptions, Target, simplify};
-use outsight::visibility::{CoverageCounts, Hidden, Look, MeasureOptions, importance, look, scene_of};
+use outsight::visibility::{CoverageCounts, Hidden, Look, MeasureOptions, Subject, importance, look};
 
 const GEARBOX: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/gearbox.ply.zst");
 
@@ -45,7 +46,9 @@ fn deleted_triangles_are_not_missed() {
     let rotation = DMat3::from_quat(DQuat::from_xyzw(0.9, -0.2, 0.4, 0.7).normalize());
     let cameras = CameraSphere::octahedral(258, CameraWeights::Equal).unwrap().rotated(rotation);
     let window = Window::around_sphere(2 * LOOK.visibility.resolution());
-    let counts = CoverageCounts::of(&scene_of(&MESH), MESH.triangle_count(), &cameras, window, None, &Silent).unwrap();
+    let subject = Subject::new(&MESH, BackendKind::Raster).unwrap();
+    let load = Workload { window, memory_limit: None, phase: "looking", progress: &Silent };
+    let counts = CoverageCounts::of(subject.machine(), MESH.triangle_count(), &cameras, load, None).unwrap();
     let deleted: Vec<usize> = (0..MESH.triangle_count()).filter(|&t| LOOK.hidden[t]).collect();
     assert!(deleted.len() * 3 > MESH.triangle_count(), "only {} deleted", deleted.len());
     let showing: u64 = deleted.iter().map(|&t| counts.seen(t, Side::Front) + counts.seen(t, Side::Back)).sum();

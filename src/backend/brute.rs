@@ -1,6 +1,6 @@
 use glam::DVec3;
 
-use crate::backend::ItemBuffers;
+use crate::backend::{ItemBuffers, Occlusion, Ray};
 use crate::camera::{UnitMesh, View, Window};
 use crate::error::Result;
 use crate::mesh::TriangleId;
@@ -45,6 +45,17 @@ impl ItemBuffers for Brute {
 
     fn bytes_per_worker(&self, window: Window) -> u64 {
         ItemBufferPair::bytes(window)
+    }
+}
+
+impl Occlusion for Brute {
+    fn blocked(&self, rays: &[Ray], blocked: &mut [bool]) -> Result<()> {
+        for (ray, blocked) in rays.iter().zip(blocked) {
+            let [origin, along] = [ray.origin, ray.direction].map(|v| DVec3::from_array(v.map(f64::from)));
+            let ahead = |corners| crossing(origin, along, corners).is_some_and(|(distance, _)| distance >= 0.0);
+            *blocked = self.triangles.iter().any(|&(corners, id)| Some(id) != ray.own && ahead(corners));
+        }
+        Ok(())
     }
 }
 

@@ -1,17 +1,21 @@
-//! Who looks: the machines that draw item buffers.
+//! Who looks: the machines that draw item buffers and that say whether rays are blocked.
 //!
-//! A backend implements [`ItemBuffers`]; [`draw_all`] runs it over many views in parallel. [`Brute`] is the judge: a
-//! page of slow, obvious code that tests compare the others with.
+//! A backend implements [`ItemBuffers`], [`Occlusion`] or both; [`Machine`] is the one that was asked for. [`draw_all`]
+//! runs item buffers over many views in parallel. [`Brute`] is the judge: a page of slow, obvious code that tests compare
+//! the others with.
 
 mod brute;
+mod machine;
 mod parallel;
 mod raster;
 
 pub use brute::Brute;
+pub use machine::{Machine, MachineScratch};
 pub use parallel::{Workload, draw_all};
 
 use crate::camera::{View, Window};
 use crate::error::{Error, Result};
+use crate::mesh::TriangleId;
 use crate::raster::ItemBufferPair;
 
 /// The machine that looks.
@@ -24,6 +28,8 @@ pub enum BackendKind {
     Embree,
     /// Rasterisation through wgpu.
     Gpu,
+    /// The judge, far too slow for anything but tests.
+    Brute,
 }
 
 impl BackendKind {
@@ -34,6 +40,7 @@ impl BackendKind {
             Self::Raster => "raster",
             Self::Embree => "embree",
             Self::Gpu => "gpu",
+            Self::Brute => "brute",
         }
     }
 
@@ -43,7 +50,7 @@ impl BackendKind {
     /// [`Error::Unavailable`], saying what to use instead.
     pub fn check(self) -> Result<()> {
         match self {
-            Self::Raster => Ok(()),
+            Self::Raster | Self::Brute => Ok(()),
             Self::Embree | Self::Gpu => Err(Error::Unavailable {
                 message: format!(
                     "backend {} is not available: this version does not have it yet; use --backend raster",
@@ -67,4 +74,25 @@ pub trait ItemBuffers: Sync {
 
     /// Bytes that one worker needs, its buffers included.
     fn bytes_per_worker(&self, window: Window) -> u64;
+}
+
+/// A ray from a point to infinity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ray {
+    /// Where it starts, in unit-sphere units.
+    pub origin: [f32; 3],
+    /// Unit vector along it.
+    pub direction: [f32; 3],
+    /// The triangle that it starts on, which does not block it.
+    pub own: Option<TriangleId>,
+}
+
+/// Answers in batches whether rays are blocked.
+pub trait Occlusion: Sync {
+    /// Says for each ray whether a triangle other than its own crosses it, whichever side it shows; `blocked` is as long as
+    /// `rays`.
+    ///
+    /// # Errors
+    /// What the library behind the backend says.
+    fn blocked(&self, rays: &[Ray], blocked: &mut [bool]) -> Result<()>;
 }

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::io::{self, Loaded, ReadOptions, TriangleAttributes, WriteOptions};
 use crate::pipeline::{Clock, Observer};
 use crate::report::colour::ColourMap;
-use crate::visibility::{self, MeasureOptions, Visibility};
+use crate::visibility::{MeasureOptions, Subject, Visibility};
 
 /// What [`measure_file`] does.
 #[derive(Debug, Clone)]
@@ -80,9 +80,9 @@ pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result
     let loaded = io::read(&request.input, &request.read)?;
     observer.mesh_read(&request.input, &loaded)?;
     let read = clock.lap();
-    let scene = visibility::scene_of(&loaded.mesh);
+    let subject = Subject::new(&loaded.mesh, request.measure.backend)?;
     let build = clock.lap();
-    let visibility = visibility::measure_scene(&scene, &loaded.mesh, &request.measure, observer)?;
+    let visibility = subject.measure(&request.measure, observer)?;
     let looked = clock.lap();
     if let Some(output) = &request.output {
         write(output, &loaded, &visibility, request)?;

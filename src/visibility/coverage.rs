@@ -5,9 +5,32 @@ use rayon::prelude::*;
 use crate::backend::{ItemBuffers, Workload, draw_all};
 use crate::camera::{CameraSphere, View, Window};
 use crate::error::Result;
-use crate::progress::Progress;
 use crate::raster::{Hit, Side};
-use crate::visibility::Shapes;
+use crate::visibility::estimate::{Estimate, Looking};
+use crate::visibility::{Details, DiagramRecorder, Shapes, Subject};
+
+/// Counts pixels: [`crate::visibility::Estimator::Coverage`].
+///
+/// # Errors
+/// As [`CoverageCounts::of`].
+pub(super) fn estimate(subject: &Subject<'_>, shapes: &Shapes, looking: &Looking<'_>) -> Result<Estimate> {
+    let triangles = subject.mesh().triangle_count();
+    let window = Window::around_sphere(looking.options.resolution_for(triangles));
+    let load = Workload {
+        window,
+        memory_limit: looking.options.memory_limit,
+        phase: "visibility",
+        progress: looking.progress,
+    };
+    let counts = CoverageCounts::of(subject.machine(), triangles, looking.cameras, load, looking.diagram)?;
+    if counts.covered() == 0 {
+        return Err(subject.nothing_to_see());
+    }
+    let (front, back) = counts.visibilities(shapes, looking.cameras);
+    debug_assert!(counts.identity_holds(&front, &back, shapes, looking.cameras));
+    let pooled_below = counts.smallest_area(looking.cameras);
+    Ok(Estimate { front, back, pooled_below, resolution: window.width, details: Details::default() })
+}
 
 /// In how many pixels each triangle was seen, over all cameras, weighted by camera.
 ///
@@ -21,7 +44,7 @@ pub struct CoverageCounts {
 }
 
 impl CoverageCounts {
-    /// Draws every camera's view and counts.
+    /// Draws every camera's view and counts; writes down in `diagram` who sees what.
     ///
     /// # Errors
     /// As [`draw_all`].
@@ -29,23 +52,28 @@ impl CoverageCounts {
         backend: &B,
         triangles: usize,
         cameras: &CameraSphere,
-        window: Window,
-        memory_limit: Option<u64>,
-        progress: &dyn Progress,
+        load: Workload<'_>,
+        diagram: Option<&DiagramRecorder>,
     ) -> Result<Self> {
         let counts: Vec<AtomicU64> = (0..2 * triangles).map(|_| AtomicU64::new(0)).collect();
         let covered = AtomicU64::new(0);
-        let views: Vec<View> = cameras.axes().iter().map(|axis| View::along(axis, window)).collect();
-        let load = Workload { window, memory_limit, phase: "visibility", progress };
-        draw_all(backend, &views, load, |axis, buffers| {
-            let weight = cameras.axes()[axis].weight;
-            count_pixels(buffers.near(), weight, &counts);
-            count_pixels(buffers.far(), weight, &counts);
+        let views: Vec<View> = cameras.axes().iter().map(|axis| View::along(axis, load.window)).collect();
+        draw_all(backend, &views, load, |number, buffers| {
+            let axis = cameras.axes()[number];
+            let weight = axis.weight;
+            let count = |hit: Hit, pixels: u64, camera: u32| {
+                counts[slot(hit.triangle.0 as usize, hit.side)].fetch_add(pixels * weight, Ordering::Relaxed);
+                if let Some(diagram) = diagram {
+                    diagram.record(hit.triangle, camera as usize);
+                }
+            };
+            for_each_run(buffers.near(), |hit, pixels| count(hit, pixels, axis.near));
+            for_each_run(buffers.far(), |hit, pixels| count(hit, pixels, axis.far));
             covered.fetch_add(2 * weight * buffers.covered(), Ordering::Relaxed);
             Ok(())
         })?;
         let counts = counts.into_iter().map(AtomicU64::into_inner).collect();
-        Ok(Self { counts, covered: covered.into_inner(), window })
+        Ok(Self { counts, covered: covered.into_inner(), window: load.window })
     }
 
     /// Weighted pixels in which the cameras saw a side of a triangle.
@@ -105,20 +133,15 @@ fn slot(triangle: usize, side: Side) -> usize {
     2 * triangle + usize::from(side == Side::Back)
 }
 
-/// Adds `weight` per pixel; neighbouring pixels of one triangle are added at once.
-fn count_pixels(pixels: impl Iterator<Item = Option<Hit>>, weight: u64, counts: &[AtomicU64]) {
+/// Hands over each hit with its number of pixels; neighbouring pixels of one triangle come together.
+fn for_each_run(pixels: impl Iterator<Item = Option<Hit>>, mut take: impl FnMut(Hit, u64)) {
     let (mut current, mut run) = (None, 0);
-    let flush = |hit: Option<Hit>, run: u64| {
-        if let Some(hit) = hit {
-            counts[slot(hit.triangle.0 as usize, hit.side)].fetch_add(run * weight, Ordering::Relaxed);
-        }
-    };
     for hit in pixels {
         if hit != current {
-            flush(current, run);
+            current.into_iter().for_each(|hit| take(hit, run));
             (current, run) = (hit, 0);
         }
         run += 1;
     }
-    flush(current, run);
+    current.into_iter().for_each(|hit| take(hit, run));
 }

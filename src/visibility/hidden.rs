@@ -2,13 +2,12 @@
 
 use glam::{DMat3, DQuat, DVec4};
 
-use crate::backend::ItemBuffers;
+use crate::backend::Workload;
 use crate::camera::{CameraSphere, CameraWeights, Window};
 use crate::error::Result;
-use crate::mesh::TriMesh;
 use crate::progress::Progress;
 use crate::raster::Side;
-use crate::visibility::{CoverageCounts, Hidden, MeasureOptions, Visibility};
+use crate::visibility::{CoverageCounts, Hidden, MeasureOptions, Subject, Visibility};
 
 /// Share of the covered pixels that may show a marked triangle in the last look. That look then takes back what it saw,
 /// so the share that is left is smaller; 1e-4 is promised.
@@ -22,9 +21,8 @@ const FURTHER_CAMERAS: usize = 258;
 const MAX_LOOKS: u64 = 16;
 
 /// Looks again, from other directions and at twice the resolution, until a look is satisfied; see [`Hidden::marks`].
-fn hidden_triangles<B: ItemBuffers>(
-    backend: &B,
-    mesh: &TriMesh,
+fn hidden_triangles(
+    subject: &Subject<'_>,
     visibility: &Visibility,
     options: &MeasureOptions,
     progress: &dyn Progress,
@@ -36,8 +34,8 @@ fn hidden_triangles<B: ItemBuffers>(
             return Ok(hidden);
         }
         let cameras = cameras_of(look)?;
-        let triangles = mesh.triangle_count();
-        let counts = CoverageCounts::of(backend, triangles, &cameras, window, options.memory_limit, progress)?;
+        let load = Workload { window, memory_limit: options.memory_limit, phase: "visibility", progress };
+        let counts = CoverageCounts::of(subject.machine(), hidden.len(), &cameras, load, None)?;
         if take_back(&counts, &mut hidden) <= TOLERATED_SHARE {
             return Ok(hidden);
         }
@@ -58,17 +56,16 @@ impl Hidden {
     ///
     /// # Errors
     /// As [`super::measure`].
-    pub fn marks<B: ItemBuffers>(
+    pub fn marks(
         self,
-        backend: &B,
-        mesh: &TriMesh,
+        subject: &Subject<'_>,
         visibility: &Visibility,
         options: &MeasureOptions,
         progress: &dyn Progress,
     ) -> Result<Vec<bool>> {
         match self {
-            Self::Delete => hidden_triangles(backend, mesh, visibility, options, progress),
-            Self::Keep | Self::Collapse => Ok(vec![false; mesh.triangle_count()]),
+            Self::Delete => hidden_triangles(subject, visibility, options, progress),
+            Self::Keep | Self::Collapse => Ok(vec![false; subject.mesh().triangle_count()]),
         }
     }
 }

@@ -5,24 +5,25 @@
 //! eq. (4.3) then cancel, and counting pixels is enough.
 
 mod coverage;
+mod diagram;
+mod estimate;
 mod hidden;
 mod importance;
 mod options;
 mod pool;
+mod shapes;
+mod subject;
 
 pub use coverage::CoverageCounts;
+pub use diagram::{DiagramRecorder, VisibilityDiagram};
 pub use importance::{Hidden, importance};
 pub use options::{Estimator, MeasureOptions, Sides};
+pub use subject::Subject;
 
-use glam::DVec3;
-use rayon::prelude::*;
-
-use crate::backend::ItemBuffers;
-use crate::camera::{CameraSphere, Frame, Window};
-use crate::error::{Error, MeshError, Result};
-use crate::mesh::{TriMesh, TriangleId};
+use crate::error::Result;
+use crate::mesh::TriMesh;
 use crate::progress::Progress;
-use crate::raster::Scene;
+use shapes::Shapes;
 
 /// The visibility of every triangle of a mesh.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,6 +36,36 @@ pub struct Visibility {
     of_mesh_sides: f64,
     resolution: u32,
     cameras: usize,
+    details: Details,
+}
+
+/// What only some estimators can say.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Details {
+    /// How exact the numbers are, from [`Estimator::Hemisphere`].
+    pub standard_error: Option<StandardError>,
+    /// Depth rescue, from [`Estimator::ItemBuffer`].
+    pub rescue: Option<Rescue>,
+    /// Rays that were cast, 0 where pictures were drawn.
+    pub rays: u64,
+}
+
+/// Standard error of a measurement: one standard deviation of what it would give if repeated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StandardError {
+    /// Of each triangle's V, front side.
+    pub per_triangle: Vec<f64>,
+    /// Of V(M).
+    pub of_mesh: f64,
+}
+
+/// How often a triangle without a pixel was called seen by its depth; Zhang & Turk 2002, section 4.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Rescue {
+    /// Pairs of a triangle and a camera in front of it without a pixel of it.
+    pub without_pixel: u64,
+    /// Those that the depth buffer let pass.
+    pub rescued: u64,
 }
 
 impl Visibility {
@@ -91,6 +122,12 @@ impl Visibility {
     pub fn cameras(&self) -> usize {
         self.cameras
     }
+
+    /// What only some estimators can say.
+    #[must_use]
+    pub fn details(&self) -> &Details {
+        &self.details
+    }
 }
 
 /// Looks at `mesh` from all cameras.
@@ -114,28 +151,7 @@ impl Visibility {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn measure(mesh: &TriMesh, options: &MeasureOptions, progress: &dyn Progress) -> Result<Visibility> {
-    measure_scene(&scene_of(mesh), mesh, options, progress)
-}
-
-/// What [`measure`] does before it looks: lays out `mesh` for drawing, in its own [`Frame`].
-#[must_use]
-pub fn scene_of(mesh: &TriMesh) -> Scene {
-    Scene::new(Frame::of(mesh).unit_copy(mesh))
-}
-
-/// The rest of [`measure`]: looks at `mesh`, laid out as `scene`.
-///
-/// # Errors
-/// As [`measure`].
-pub fn measure_scene(
-    scene: &Scene,
-    mesh: &TriMesh,
-    options: &MeasureOptions,
-    progress: &dyn Progress,
-) -> Result<Visibility> {
-    options.check()?;
-    let cameras = CameraSphere::octahedral(options.cameras, options.camera_weights)?;
-    measure_with(scene, mesh, &cameras, options, progress)
+    Subject::new(mesh, options.backend)?.measure(options, progress)
 }
 
 /// What the simplifier needs to know of a mesh: how visible each triangle is, and which may go unseen.
@@ -152,87 +168,8 @@ pub struct Look {
 /// # Errors
 /// As [`measure`].
 pub fn look(mesh: &TriMesh, options: &MeasureOptions, hidden: Hidden, progress: &dyn Progress) -> Result<Look> {
-    let scene = scene_of(mesh);
-    let visibility = measure_scene(&scene, mesh, options, progress)?;
-    let hidden = hidden.marks(&scene, mesh, &visibility, options, progress)?;
+    let subject = Subject::new(mesh, options.backend)?;
+    let visibility = subject.measure(options, progress)?;
+    let hidden = hidden.marks(&subject, &visibility, options, progress)?;
     Ok(Look { visibility, hidden })
-}
-
-/// Like [`measure`], with a backend and cameras of the caller's.
-///
-/// `backend` must draw the mesh in its own [`Frame`]; of `options`, the resolution, the sides and the memory limit count.
-///
-/// # Errors
-/// As [`measure`].
-pub fn measure_with<B: ItemBuffers>(
-    backend: &B,
-    mesh: &TriMesh,
-    cameras: &CameraSphere,
-    options: &MeasureOptions,
-    progress: &dyn Progress,
-) -> Result<Visibility> {
-    let window = Window::around_sphere(options.resolution_for(mesh.triangle_count()));
-    let counts = CoverageCounts::of(backend, mesh.triangle_count(), cameras, window, options.memory_limit, progress)?;
-    progress.check()?;
-    if counts.covered() == 0 {
-        let source = MeshError::NothingToSee { triangles: mesh.triangle_count() };
-        return Err(Error::Mesh { place: "looking".to_owned(), source });
-    }
-    let shapes = Shapes::of(mesh, &Frame::of(mesh));
-    from_coverage(&counts, mesh, &shapes, cameras, options.sides, progress)
-}
-
-/// Areas (unit-sphere units) and unit normals of all triangles; area 0 marks degenerate ones.
-struct Shapes {
-    areas: Vec<f64>,
-    normals: Vec<[f32; 3]>,
-}
-
-impl Shapes {
-    fn of(mesh: &TriMesh, frame: &Frame) -> Self {
-        let shape = |t: u32| {
-            let (area, normal) = frame.area_and_normal(mesh, TriangleId(t)).unwrap_or((0.0, DVec3::ZERO));
-            (area, normal.as_vec3().to_array())
-        };
-        let (areas, normals) = (0..mesh.triangle_count() as u32).into_par_iter().map(shape).unzip();
-        Self { areas, normals }
-    }
-
-    fn normal(&self, t: usize) -> DVec3 {
-        DVec3::from_array(self.normals[t].map(f64::from))
-    }
-}
-
-fn from_coverage(
-    counts: &CoverageCounts,
-    mesh: &TriMesh,
-    shapes: &Shapes,
-    cameras: &CameraSphere,
-    sides: Sides,
-    progress: &dyn Progress,
-) -> Result<Visibility> {
-    let (front, back) = counts.visibilities(shapes, cameras);
-    debug_assert!(counts.identity_holds(&front, &back, shapes, cameras));
-    let pools = pool::pool_small(mesh, shapes, counts.smallest_area(cameras), [&front, &back], progress)?;
-    let value = |t: usize| sides.combine(pools.front(t, &front), pools.back(t, &back));
-    let per_triangle = (0..front.len()).map(|t| value(t).clamp(0.0, 1.0)).collect();
-    let seen = (0..front.len()).map(|t| pools.front(t, &front) > 0.0 || pools.back(t, &back) > 0.0).collect();
-    let raw_sides = |t: usize| sides.combine(front[t], back[t]);
-    Ok(Visibility {
-        of_mesh: area_mean(&shapes.areas, |t| front[t]),
-        of_mesh_sides: area_mean(&shapes.areas, raw_sides),
-        per_triangle,
-        seen,
-        resolution: counts.window().width,
-        cameras: cameras.count(),
-        front,
-        back,
-    })
-}
-
-/// Mean of a value over the surface; sums run in index order.
-fn area_mean(areas: &[f64], value: impl Fn(usize) -> f64) -> f64 {
-    let total: f64 = areas.iter().sum();
-    let weighted: f64 = areas.iter().enumerate().map(|(t, area)| area * value(t)).sum();
-    if total > 0.0 { weighted / total } else { 0.0 }
 }

@@ -27,6 +27,14 @@ impl Estimator {
             Self::Hemisphere => "hemisphere",
         }
     }
+
+    pub(super) fn unavailable(self) -> Error {
+        let message = format!(
+            "estimator {} is not available: this version does not have it yet; use --estimator coverage",
+            self.name()
+        );
+        Error::Unavailable { message }
+    }
 }
 
 /// Which side of a triangle makes its visibility.
@@ -133,12 +141,7 @@ impl MeasureOptions {
         self.backend.check()?;
         match self.estimator {
             Estimator::Coverage => Ok(()),
-            other => Err(Error::Unavailable {
-                message: format!(
-                    "estimator {} is not available: this version does not have it yet; use --estimator coverage",
-                    other.name()
-                ),
-            }),
+            other => Err(other.unavailable()),
         }
     }
 }

@@ -1,0 +1,64 @@
+use crate::camera::CameraSphere;
+use crate::error::Result;
+use crate::progress::Progress;
+use crate::visibility::{
+    Details, DiagramRecorder, Estimator, MeasureOptions, Shapes, Subject, Visibility, coverage, pool,
+};
+
+/// Who looks how, for every estimator alike.
+pub(super) struct Looking<'a> {
+    pub cameras: &'a CameraSphere,
+    pub options: &'a MeasureOptions,
+    /// Where to write down which camera sees which triangle.
+    pub diagram: Option<&'a DiagramRecorder>,
+    pub progress: &'a dyn Progress,
+}
+
+/// What an estimator finds: V of each triangle's front and back as counted, neither clamped nor pooled.
+pub(super) struct Estimate {
+    pub front: Vec<f64>,
+    pub back: Vec<f64>,
+    /// Triangles of a smaller area (unit-sphere units) are too small for their own count; 0 where none are.
+    pub pooled_below: f64,
+    /// Pixels along an image's side; 0 where nothing was drawn.
+    pub resolution: u32,
+    pub details: Details,
+}
+
+/// Runs the estimator that the options name and makes its counts a [`Visibility`].
+///
+/// # Errors
+/// As [`super::measure`].
+pub(super) fn estimate(subject: &Subject<'_>, looking: &Looking<'_>) -> Result<Visibility> {
+    let shapes = Shapes::of(subject.mesh(), subject.frame());
+    if shapes.areas.iter().all(|&area| area == 0.0) {
+        return Err(subject.nothing_to_see());
+    }
+    let found = match looking.options.estimator {
+        Estimator::Coverage => coverage::estimate(subject, &shapes, looking)?,
+        other => return Err(other.unavailable()),
+    };
+    finish(subject, &shapes, found, looking)
+}
+
+/// Pools, clamps and averages.
+fn finish(subject: &Subject<'_>, shapes: &Shapes, found: Estimate, looking: &Looking<'_>) -> Result<Visibility> {
+    let Estimate { front, back, pooled_below, resolution, details } = found;
+    let sides = looking.options.sides;
+    let pools = pool::pool_small(subject.mesh(), shapes, pooled_below, [&front, &back], looking.progress)?;
+    let value = |t: usize| sides.combine(pools.front(t, &front), pools.back(t, &back));
+    let per_triangle = (0..front.len()).map(|t| value(t).clamp(0.0, 1.0)).collect();
+    let seen = (0..front.len()).map(|t| pools.front(t, &front) > 0.0 || pools.back(t, &back) > 0.0).collect();
+    let raw_sides = |t: usize| sides.combine(front[t], back[t]);
+    Ok(Visibility {
+        of_mesh: shapes.area_mean(|t| front[t]),
+        of_mesh_sides: shapes.area_mean(raw_sides),
+        per_triangle,
+        seen,
+        resolution,
+        cameras: looking.cameras.count(),
+        front,
+        back,
+        details,
+    })
+}

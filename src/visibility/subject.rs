@@ -1,0 +1,74 @@
+use crate::backend::{BackendKind, Machine};
+use crate::camera::{CameraSphere, Frame};
+use crate::error::{Error, MeshError, Result};
+use crate::mesh::TriMesh;
+use crate::progress::Progress;
+use crate::visibility::estimate::{Looking, estimate};
+use crate::visibility::{DiagramRecorder, MeasureOptions, Visibility};
+
+/// A mesh in its frame, laid out for the machine that looks at it.
+#[derive(Debug)]
+pub struct Subject<'a> {
+    mesh: &'a TriMesh,
+    frame: Frame,
+    machine: Machine,
+}
+
+impl<'a> Subject<'a> {
+    /// Lays out `mesh` in its own [`Frame`].
+    ///
+    /// # Errors
+    /// [`Error::Unavailable`] for a backend that is not there.
+    pub fn new(mesh: &'a TriMesh, backend: BackendKind) -> Result<Self> {
+        let frame = Frame::of(mesh);
+        Ok(Self { mesh, frame, machine: Machine::new(backend, frame.unit_copy(mesh))? })
+    }
+
+    /// The mesh.
+    #[must_use]
+    pub fn mesh(&self) -> &'a TriMesh {
+        self.mesh
+    }
+
+    /// Its frame.
+    #[must_use]
+    pub fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// Who looks.
+    #[must_use]
+    pub fn machine(&self) -> &Machine {
+        &self.machine
+    }
+
+    /// Looks from the cameras that `options` name.
+    ///
+    /// # Errors
+    /// As [`super::measure`].
+    pub fn measure(&self, options: &MeasureOptions, progress: &dyn Progress) -> Result<Visibility> {
+        options.check()?;
+        let cameras = CameraSphere::octahedral(options.cameras, options.camera_weights)?;
+        self.measure_from(&cameras, options, None, progress)
+    }
+
+    /// Looks from `cameras`, whatever `options` say about cameras, and writes down in `diagram` who sees what.
+    ///
+    /// # Errors
+    /// As [`super::measure`].
+    pub fn measure_from(
+        &self,
+        cameras: &CameraSphere,
+        options: &MeasureOptions,
+        diagram: Option<&DiagramRecorder>,
+        progress: &dyn Progress,
+    ) -> Result<Visibility> {
+        options.check()?;
+        estimate(self, &Looking { cameras, options, diagram, progress })
+    }
+
+    pub(super) fn nothing_to_see(&self) -> Error {
+        let source = MeshError::NothingToSee { triangles: self.mesh.triangle_count() };
+        Error::Mesh { place: "looking".to_owned(), source }
+    }
+}
