@@ -1,19 +1,14 @@
 #!/usr/bin/env python3
 """Outsight beside other simplifiers: image error at equal counts and processor seconds, all in one run.
 
-    python3 -m venv /tmp/peers && /tmp/peers/bin/pip install pymeshlab fast-simplification numpy
-    cargo build --release
-    /tmp/peers/bin/python benches/peers/compare.py MODEL...
+    benches/peers/run simplify MODEL...
 
 Each rival simplifies to Outsight's count; `outsight compare` judges them all against the original. Seconds are
 processor time of the simplification alone: for Outsight, of the whole process less reading and writing, on one thread,
 looking included. A rival that stops above the count is shown with its count, and is not the best.
 """
 
-import json
 import pathlib
-import resource
-import subprocess
 import sys
 import tempfile
 import time
@@ -22,16 +17,9 @@ import fast_simplification
 import numpy as np
 import pymeshlab
 
-OUTSIGHT = pathlib.Path(__file__).resolve().parents[2] / "target" / "release" / "outsight"
+from program import outsight
+
 RATIOS = [0.2, 0.05, 0.005]
-
-
-def outsight(*arguments):
-    """Runs the program; returns its JSON object and its processor seconds."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    done = subprocess.run([OUTSIGHT, *map(str, arguments), "--json", "-q"], check=True, capture_output=True)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return json.loads(done.stdout), (after.ru_utime + after.ru_stime) - (before.ru_utime + before.ru_stime)
 
 
 def meshlab(source, target, count, by_occlusion):
