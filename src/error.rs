@@ -84,6 +84,13 @@ pub enum Error {
         message: String,
     },
 
+    /// The library behind a backend: it met an error that is not ours to foresee.
+    #[error("{message}")]
+    Backend {
+        /// What it said, what was done, and what to use instead.
+        message: String,
+    },
+
     /// The caller asked the work to stop.
     #[error("stopped before the end, nothing was written")]
     Cancelled,
@@ -101,7 +108,7 @@ impl Error {
             Self::Write { .. } => 4,
             Self::Limit { .. } => 5,
             Self::Unavailable { .. } => 6,
-            Self::ShapeMismatch { .. } => 70,
+            Self::ShapeMismatch { .. } | Self::Backend { .. } => 70,
             Self::Cancelled => 130,
         }
     }

@@ -1,14 +1,16 @@
 use glam::DVec3;
+use robust::{Coord3D, orient3d};
 
 use crate::backend::{ItemBuffers, Occlusion, Ray};
 use crate::camera::{UnitMesh, View, Window};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::mesh::TriangleId;
 use crate::raster::{Hit, ItemBufferPair, Side};
 
-/// The judge: one ray per pixel against every triangle, in `f64`, with no shortcut.
+/// The judge: every ray against every triangle, in `f64`, with no shortcut.
 ///
 /// It shares nothing with the rasteriser but the layout of the result. On an edge it lets both triangles have the pixel.
+/// Rays it judges by the exact signs of volumes, so that none slips between two triangles that share an edge or a vertex.
 #[derive(Debug)]
 pub struct Brute {
     triangles: Vec<([DVec3; 3], TriangleId)>,
@@ -50,13 +52,36 @@ impl ItemBuffers for Brute {
 
 impl Occlusion for Brute {
     fn blocked(&self, rays: &[Ray], blocked: &mut [bool]) -> Result<()> {
-        for (ray, blocked) in rays.iter().zip(blocked) {
-            let [origin, along] = [ray.origin, ray.direction].map(|v| DVec3::from_array(v.map(f64::from)));
-            let ahead = |corners| crossing(origin, along, corners).is_some_and(|(distance, _)| distance >= 0.0);
-            *blocked = self.triangles.iter().any(|&(corners, id)| Some(id) != ray.own && ahead(corners));
+        if rays.len() != blocked.len() {
+            return Err(Error::ShapeMismatch { what: "blocked", got: blocked.len(), expected: rays.len() });
+        }
+        for (ray, answer) in rays.iter().zip(blocked) {
+            let [origin, direction] = [ray.origin, ray.direction].map(|v| DVec3::from_array(v.map(f64::from)));
+            let others = self.triangles.iter().filter(|(_, id)| Some(*id) != ray.own);
+            *answer = others.into_iter().any(|&(corners, _)| crosses(origin, origin + direction, corners));
         }
         Ok(())
     }
+}
+
+/// Whether the ray from `origin` through `other` crosses a triangle, its border included; never one in its own plane.
+///
+/// The signs are exact, and opposite for the two triangles at an edge: a closed mesh lets no ray out.
+///
+/// Source: Shewchuk 1997, Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates.
+fn crosses(origin: DVec3, other: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
+    let volume = |p, q, r| orient3d(coord(p), coord(q), coord(r), coord(origin));
+    let edges = [(b, c), (c, a), (a, b)].map(|(p, q)| volume(other, p, q));
+    if edges == [0.0; 3] {
+        return false;
+    }
+    // How far the plane lies ahead, times how steeply the ray crosses it.
+    let ahead = volume(a, b, c);
+    (ahead >= 0.0 && edges.iter().all(|&e| e >= 0.0)) || (ahead <= 0.0 && edges.iter().all(|&e| e <= 0.0))
+}
+
+fn coord(p: DVec3) -> Coord3D<f64> {
+    Coord3D { x: p.x, y: p.y, z: p.z }
 }
 
 /// Where the line through `origin` along `toward` crosses a triangle, and which side one sees from `toward`.

@@ -1,4 +1,6 @@
 use crate::backend::{BackendKind, Brute, ItemBuffers, Occlusion};
+#[cfg(feature = "embree")]
+use crate::backend::{EmbreeScene, GridScratch};
 use crate::camera::{UnitMesh, View, Window};
 use crate::error::{Error, Result};
 use crate::raster::{ItemBufferPair, Scene, Screen};
@@ -8,6 +10,9 @@ use crate::raster::{ItemBufferPair, Scene, Screen};
 pub enum Machine {
     /// For the CPU rasteriser.
     Raster(Scene),
+    /// For ray casting with Embree.
+    #[cfg(feature = "embree")]
+    Embree(EmbreeScene),
     /// For the judge.
     Brute(Brute),
 }
@@ -16,16 +21,20 @@ pub enum Machine {
 #[derive(Debug, Default)]
 pub struct MachineScratch {
     screen: Screen,
+    #[cfg(feature = "embree")]
+    grid: GridScratch,
 }
 
 impl Machine {
     /// Lays out a mesh for a backend.
     ///
     /// # Errors
-    /// [`Error::Unavailable`] for a backend that this build or machine does not have.
+    /// [`Error::Unavailable`] for a backend that this build or machine does not have; what the library behind it says.
     pub fn new(kind: BackendKind, mesh: UnitMesh) -> Result<Self> {
         kind.check()?;
         match kind {
+            #[cfg(feature = "embree")]
+            BackendKind::Embree => Ok(Self::Embree(EmbreeScene::new(&mesh)?)),
             BackendKind::Brute => Ok(Self::Brute(Brute::new(&mesh))),
             _ => Ok(Self::Raster(Scene::new(mesh))),
         }
@@ -41,6 +50,8 @@ impl Machine {
                 name: "--backend",
                 message: "raster draws pictures and casts no rays; this estimator needs --backend embree".to_owned(),
             }),
+            #[cfg(feature = "embree")]
+            Self::Embree(scene) => Ok(scene),
             Self::Brute(brute) => Ok(brute),
         }
     }
@@ -52,6 +63,8 @@ impl ItemBuffers for Machine {
     fn draw(&self, view: &View, scratch: &mut MachineScratch, buffers: &mut ItemBufferPair) -> Result<()> {
         match self {
             Self::Raster(scene) => scene.draw(view, &mut scratch.screen, buffers),
+            #[cfg(feature = "embree")]
+            Self::Embree(scene) => scene.draw(view, &mut scratch.grid, buffers),
             Self::Brute(brute) => brute.draw(view, &mut (), buffers),
         }
     }
@@ -59,6 +72,8 @@ impl ItemBuffers for Machine {
     fn bytes_per_worker(&self, window: Window) -> u64 {
         match self {
             Self::Raster(scene) => scene.bytes_per_worker(window),
+            #[cfg(feature = "embree")]
+            Self::Embree(scene) => scene.bytes_per_worker(window),
             Self::Brute(brute) => brute.bytes_per_worker(window),
         }
     }

@@ -5,11 +5,15 @@
 //! the others with.
 
 mod brute;
+#[cfg(feature = "embree")]
+mod embree;
 mod machine;
 mod parallel;
 mod raster;
 
 pub use brute::Brute;
+#[cfg(feature = "embree")]
+pub use embree::{EmbreeScene, GridScratch};
 pub use machine::{Machine, MachineScratch};
 pub use parallel::{Workload, draw_all};
 
@@ -51,7 +55,17 @@ impl BackendKind {
     pub fn check(self) -> Result<()> {
         match self {
             Self::Raster | Self::Brute => Ok(()),
-            Self::Embree | Self::Gpu => Err(Error::Unavailable {
+            #[cfg(feature = "embree")]
+            Self::Embree => Ok(()),
+            #[cfg(not(feature = "embree"))]
+            Self::Embree => Err(Error::Unavailable {
+                message:
+                    "backend embree is not available: this program was built without the feature `embree`; install \
+                          Embree (Debian, Ubuntu: apt-get install libembree-dev libclang-dev) and build with \
+                          `--features embree`, or use --backend raster"
+                        .to_owned(),
+            }),
+            Self::Gpu => Err(Error::Unavailable {
                 message: format!(
                     "backend {} is not available: this version does not have it yet; use --backend raster",
                     self.name()

@@ -2,6 +2,10 @@
 
 use clap::Args;
 use glam::DVec3;
+use outsight::Error;
+use outsight::backend::BackendKind;
+#[cfg(feature = "embree")]
+use outsight::backend::EmbreeScene;
 use outsight::mesh::TriMesh;
 use outsight::visibility::{self, MeasureOptions};
 use serde::Serialize;
@@ -37,7 +41,7 @@ struct Report {
 struct BackendState {
     name: &'static str,
     works: bool,
-    note: &'static str,
+    note: String,
 }
 
 #[derive(Debug, Serialize)]
@@ -67,12 +71,27 @@ pub fn run(_flags: &Flags, console: &Console) -> Result<(), Failure> {
 }
 
 fn backends() -> Vec<BackendState> {
-    let absent = "not in this version of Outsight; use --backend raster, which is exact to the pixel everywhere";
+    let state = |name, note: Result<String, Error>| BackendState {
+        name,
+        works: note.is_ok(),
+        note: note.unwrap_or_else(|reason| reason.to_string()),
+    };
     vec![
-        BackendState { name: "raster", works: true, note: "CPU rasteriser, the default" },
-        BackendState { name: "embree", works: false, note: absent },
-        BackendState { name: "gpu", works: false, note: absent },
+        state("raster", Ok("CPU rasteriser, the default".to_owned())),
+        state("embree", embree()),
+        state("gpu", BackendKind::Gpu.check().map(|()| String::new())),
     ]
+}
+
+/// Which library was loaded, as it says itself.
+#[cfg(feature = "embree")]
+fn embree() -> Result<String, Error> {
+    EmbreeScene::library_version().map(|version| format!("ray casting, Embree {version}"))
+}
+
+#[cfg(not(feature = "embree"))]
+fn embree() -> Result<String, Error> {
+    BackendKind::Embree.check().map(|()| String::new())
 }
 
 /// Measures a cube: nothing hides any of it, so that every visibility must be 1.

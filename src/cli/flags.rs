@@ -177,8 +177,7 @@ names! {
         Auto => BackendKind::Raster,
         // CPU rasteriser, always there
         Raster => BackendKind::Raster,
-        // Ray casting with Embree, not there yet
-        #[value(hide = true)]
+        // Ray casting with Embree
         Embree => BackendKind::Embree,
         // GPU rasteriser, not there yet
         #[value(hide = true)]
