@@ -111,10 +111,9 @@ fn every_exit_code_has_its_cause() {
 #[test]
 fn what_this_version_lacks_is_named_with_what_to_use_instead() {
     let home = directory();
-    let cases: [(&[&str], &str); 6] = [
+    let cases: [(&[&str], &str); 5] = [
         (&["measure", "cube.off", "--backend", "gpu"], "--backend raster"),
         (&["measure", "cube.off", "--estimator", "item-buffer"], "--estimator coverage"),
-        (&["measure", "cube.off", "--estimator", "hemisphere"], "--estimator coverage"),
         (&["simplify", "cube.off", "-o", "x.ply", "-t", "4", "--metric", "orientation"], "--metric visibility"),
         (&["simplify", "cube.off", "-o", "x.ply", "-t", "4", "--metric", "silhouette"], "--metric visibility"),
         (&["simplify", "cube.off", "-o", "x.ply", "-t", "4", "--refit", "guarded"], "--refit none"),
@@ -123,6 +122,23 @@ fn what_this_version_lacks_is_named_with_what_to_use_instead() {
         let ended = run(home.path(), arguments);
         assert_eq!(ended.code, 6, "{arguments:?}: {}", ended.err);
         assert!(ended.err.contains(instead), "{arguments:?}: {}", ended.err);
+    }
+}
+
+#[test]
+fn flags_of_rays_say_what_they_need() {
+    let home = directory();
+    let cases: [(&[&str], &str); 5] = [
+        (&["--estimator", "surface"], "surface needs rays, which backend raster does not cast; add --backend embree"),
+        (&["--estimator", "hemisphere", "--backend", "auto"], "add --backend embree"),
+        (&["--samples", "64"], "--samples: belongs to the estimator hemisphere, and coverage looks"),
+        (&["--points", "0"], "--points"),
+        (&["--target-error", "2"], "write a standard error above 0 and below 1"),
+    ];
+    for (flags, message) in cases {
+        let ended = run(home.path(), &[&["measure", "cube.off"], flags].concat());
+        assert_eq!(ended.code, 2, "{flags:?}: {}", ended.err);
+        assert!(ended.err.contains(message), "{flags:?}: {}", ended.err);
     }
 }
 

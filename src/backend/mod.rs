@@ -48,6 +48,12 @@ impl BackendKind {
         }
     }
 
+    /// Whether it can say that a ray is blocked; all can draw pictures.
+    #[must_use]
+    pub fn casts_rays(self) -> bool {
+        matches!(self, Self::Embree | Self::Brute)
+    }
+
     /// Says whether this build and machine have the backend.
     ///
     /// # Errors

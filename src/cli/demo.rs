@@ -217,7 +217,7 @@ fn explanation(report: &Report) -> String {
          Image error: how far pictures of it are from pictures of the original, in grey levels of 255.\n\
          Outline error: pixels per picture, of 512 by 512, that only one of the two outlines covers.\n",
         seen.mesh,
-        report.measure.cameras,
+        report.measure.cameras.unwrap_or_default(),
         100.0 * RATIO,
     );
     if report.image_error_saved > 0.0 {

@@ -10,7 +10,7 @@ use outsight::camera::CameraWeights;
 use outsight::error::{Error, Result};
 use outsight::io::{Format, ReadOptions};
 use outsight::report::colour::ColourMap;
-use outsight::visibility::{Estimator, Sides};
+use outsight::visibility::{Estimator, PartlySeen, Sides};
 
 use super::progress::Show;
 use super::values;
@@ -126,6 +126,43 @@ pub struct LookingFlags {
     /// Visibility of a triangle's front, better side, or both added [best: better, paper: one]
     #[arg(long, value_name = "WHICH")]
     pub sides: Option<SidesName>,
+    #[command(flatten)]
+    pub rays: RayFlags,
+}
+
+/// How rays are cast; each flag belongs to one estimator.
+#[derive(Debug, Clone, Default, Args)]
+#[command(next_help_heading = "Casting rays")]
+pub struct RayFlags {
+    /// surface: points of each triangle that look at the cameras, 1 to 1024 [default: 1]
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub points: Option<u32>,
+    /// surface: a triangle seen in part counts by its share of seen points, or as a whole [default: share]
+    #[arg(long, value_name = "HOW")]
+    pub partly_seen: Option<PartlySeenName>,
+    /// hemisphere: rays from each side of a triangle, 8 to 65536, taken up to a power of two [default: 64]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(8..=65536))]
+    pub samples: Option<u32>,
+    /// hemisphere: cast more rays until the standard error of the mesh's visibility is at most this
+    #[arg(long, value_name = "ERROR", value_parser = values::standard_error, allow_negative_numbers = true)]
+    pub target_error: Option<f64>,
+    /// hemisphere: the same for the triangle that 99 of 100 are more exact than
+    #[arg(long, value_name = "ERROR", value_parser = values::standard_error, allow_negative_numbers = true)]
+    pub target_error_p99: Option<f64>,
+}
+
+impl RayFlags {
+    /// The flags that were given, each with the estimator that it belongs to.
+    pub fn given(&self) -> impl Iterator<Item = (&'static str, Estimator)> {
+        let all = [
+            (self.points.is_some(), "--points", Estimator::Surface),
+            (self.partly_seen.is_some(), "--partly-seen", Estimator::Surface),
+            (self.samples.is_some(), "--samples", Estimator::Hemisphere),
+            (self.target_error.is_some(), "--target-error", Estimator::Hemisphere),
+            (self.target_error_p99.is_some(), "--target-error-p99", Estimator::Hemisphere),
+        ];
+        all.into_iter().filter(|(given, ..)| *given).map(|(_, name, estimator)| (name, estimator))
+    }
 }
 
 /// A set of defaults.
@@ -193,12 +230,20 @@ names! {
         // The paper's: a camera sees a triangle or not, not there yet
         #[value(hide = true)]
         ItemBuffer => Estimator::ItemBuffer,
-        // Rays from the triangle to the cameras, not there yet
-        #[value(hide = true)]
+        // Rays from the triangle to the cameras; needs --backend embree
         Surface => Estimator::Surface,
-        // Cosine-distributed rays, not there yet
-        #[value(hide = true)]
+        // Rays spread by the cosine, with a standard error; needs --backend embree
         Hemisphere => Estimator::Hemisphere,
+    }
+}
+
+names! {
+    /// `--partly-seen`.
+    PartlySeenName => PartlySeen {
+        // Seen points ÷ all points
+        Share => PartlySeen::Share,
+        // 1 if any point is seen, as in the paper
+        Whole => PartlySeen::Whole,
     }
 }
 

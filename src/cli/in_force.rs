@@ -18,6 +18,12 @@ pub fn measure(options: &MeasureOptions) -> Value {
         "backend": options.backend.name(),
         "estimator": options.estimator.name(),
         "sides": options.sides.name(),
+        "points": options.rays.points,
+        "partly_seen": options.rays.partly_seen.name(),
+        "samples": options.rays.samples,
+        "target_error": options.rays.target_error,
+        "target_error_p99": options.rays.target_error_p99,
+        "seed": options.rays.seed,
     })
 }
 

@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use outsight::pipeline::{MeasureReport, MeasureRequest, measure_file};
+use outsight::pipeline::{ErrorSummary, MeasureReport, MeasureRequest, measure_file};
+use outsight::report::table::thousands;
+use outsight::visibility::RayOptions;
 use serde::Serialize;
 use serde_json::Value;
 
@@ -15,7 +17,7 @@ use super::in_force;
 use super::outputs::{self, Kind, Planned, ending_of};
 use super::presets;
 use super::system::peak_mib;
-use super::text::{count, duration, pairs};
+use super::text::{count, duration, pairs, significant};
 use super::watch::{Found, Watch};
 
 #[derive(Debug, Args)]
@@ -84,20 +86,36 @@ fn text(report: &MeasureReport, request: &MeasureRequest) -> String {
         ("visibility of the mesh", format!("{:.4}  (1: all of it sees open sky; fronts of triangles only)", seen.mesh)),
         ("triangles", count(report.triangles)),
         ("never seen", format!("{} ({never:.1} %)", count(seen.never_seen))),
-        (
-            "looked with",
-            format!(
-                "{}, {}, {} cameras, {} pixels square",
-                report.backend, report.estimator, report.cameras, report.resolution
-            ),
-        ),
+        ("looked with", looked_with(report)),
         ("time", format!("{} ({} looking)", duration(report.seconds.total), duration(report.seconds.visibility))),
     ];
     if seen.mesh_sides != seen.mesh {
         rows.insert(1, ("with backs", format!("{:.4}  (--sides {})", seen.mesh_sides, report.sides)));
     }
+    if let Some(error) = &report.standard_error {
+        rows.insert(1, ("standard error", exactness(error, &request.measure.rays)));
+    }
     if let Some(output) = &request.output {
         rows.push(("written", output.display().to_string()));
     }
     pairs(&rows)
+}
+
+fn looked_with(report: &MeasureReport) -> String {
+    let mut parts = vec![report.backend.to_owned(), report.estimator.to_owned()];
+    parts.extend(report.cameras.map(|n| format!("{n} cameras")));
+    parts.extend(report.resolution.map(|n| format!("{n} pixels square")));
+    parts.extend((report.rays > 0).then(|| format!("{} rays", thousands(report.rays))));
+    parts.join(", ")
+}
+
+fn exactness(error: &ErrorSummary, asked: &RayOptions) -> String {
+    let [mesh, p99] = [error.mesh, error.p99].map(significant);
+    let samples = thousands(error.samples.into());
+    let reached = format!("{mesh}, of single triangles at most {p99} for 99 in 100  ({samples} rays a side)");
+    let missed =
+        [("--target-error", asked.target_error, error.mesh), ("--target-error-p99", asked.target_error_p99, error.p99)];
+    let missed = missed.iter().filter(|(_, target, got)| target.is_some_and(|target| *got > target));
+    missed
+        .fold(reached, |text, (name, ..)| format!("{text}; {name} is not reached with the most rays a triangle casts"))
 }

@@ -3,11 +3,11 @@
 use outsight::error::{Error, Result};
 use outsight::pipeline::Metric;
 use outsight::simplify::{PlaneWeight, SimplifyOptions, Topology};
-use outsight::visibility::{Hidden, MeasureOptions};
+use outsight::visibility::{Estimator, Hidden, MeasureOptions, RayOptions};
 
 use super::collapsing::{CollapseFlags, MetricName, RefitName};
 use super::console::Console;
-use super::flags::{GlobalFlags, LookingFlags, Preset};
+use super::flags::{GlobalFlags, LookingFlags, Preset, RayFlags};
 
 /// p in V^p: both presets square, as the paper does.
 pub const VISIBILITY_POWER: f64 = 2.0;
@@ -15,7 +15,8 @@ pub const VISIBILITY_POWER: f64 = 2.0;
 /// How visibility is measured under these flags.
 ///
 /// # Errors
-/// [`Error::Unavailable`] for a backend or an estimator that this version does not have.
+/// [`Error::Unavailable`] for a backend or an estimator that this version does not have, [`Error::Option`] for flags that
+/// do not go together.
 pub fn measure_options(flags: &LookingFlags, global: &GlobalFlags) -> Result<MeasureOptions> {
     let preset = match flags.preset {
         Preset::Best => MeasureOptions::default(),
@@ -28,10 +29,30 @@ pub fn measure_options(flags: &LookingFlags, global: &GlobalFlags) -> Result<Mea
         backend: flags.backend.map_or(preset.backend, Into::into),
         estimator: flags.estimator.map_or(preset.estimator, Into::into),
         sides: flags.sides.map_or(preset.sides, Into::into),
+        rays: ray_options(&flags.rays, preset.rays, global.seed),
         memory_limit: global.memory_limit,
     };
     options.check()?;
-    Ok(options)
+    match flags.rays.given().find(|&(_, estimator)| estimator != options.estimator) {
+        None => Ok(options),
+        Some((name, estimator)) => {
+            let [of, not] = [estimator, options.estimator].map(Estimator::name);
+            let message =
+                format!("belongs to the estimator {of}, and {not} looks; add --estimator {of} or leave it out");
+            Err(Error::Option { name, message })
+        }
+    }
+}
+
+fn ray_options(flags: &RayFlags, preset: RayOptions, seed: u64) -> RayOptions {
+    RayOptions {
+        points: flags.points.unwrap_or(preset.points),
+        partly_seen: flags.partly_seen.map_or(preset.partly_seen, Into::into),
+        samples: flags.samples.unwrap_or(preset.samples),
+        target_error: flags.target_error,
+        target_error_p99: flags.target_error_p99,
+        seed,
+    }
 }
 
 /// Says where the preset `paper` cannot be followed yet, for commands that measure.

@@ -111,6 +111,12 @@ pub fn non_negative(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "write a number, at least 0".to_owned())
 }
 
+/// A standard error of a visibility, above 0 and below 1.
+pub fn standard_error(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|n: &f64| *n > 0.0 && *n < 1.0);
+    number.ok_or_else(|| "write a standard error above 0 and below 1, as 0.001".to_owned())
+}
+
 /// A direction `x,y,z` of any length but 0.
 pub fn direction(text: &str) -> Result<[f64; 3], String> {
     let form = "write a direction as x,y,z, such as 1,1,0.5; 0,0,0 is none";
@@ -145,6 +151,12 @@ mod tests {
         for wrong in ["0", "-0.1", "nan", "inf", "x"] {
             assert!(ratio(wrong).is_err(), "{wrong}");
         }
+    }
+
+    #[test]
+    fn standard_errors_lie_between_zero_and_one() {
+        assert_eq!(standard_error("1e-3"), Ok(0.001));
+        assert!(["0", "1", "-0.1", "nan", "inf", "x"].into_iter().all(|text| standard_error(text).is_err()));
     }
 
     #[test]

@@ -1,11 +1,13 @@
-//! Geometry of single triangles and boxes, without any notion of a mesh.
+//! Geometry of points, single triangles and boxes, without any notion of a mesh.
 
 mod bounds;
 mod dodecahedron;
+mod morton;
 mod octahedron;
 
 pub use bounds::Aabb;
 pub use dodecahedron::dodecahedron_axes;
+pub use morton::morton_code;
 pub use octahedron::OctahedralSphere;
 
 use glam::DVec3;

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::io::{self, Loaded, ReadOptions, TriangleAttributes, WriteOptions};
 use crate::pipeline::{Clock, Observer};
 use crate::report::colour::ColourMap;
-use crate::visibility::{MeasureOptions, Subject, Visibility};
+use crate::visibility::{MeasureOptions, StandardError, Subject, Visibility};
 
 /// What [`measure_file`] does.
 #[derive(Debug, Clone)]
@@ -30,10 +30,10 @@ pub struct MeasureRequest {
 pub struct MeasureReport {
     /// Triangles looked at.
     pub triangles: usize,
-    /// Cameras.
-    pub cameras: usize,
-    /// Pixels along an image's side.
-    pub resolution: u32,
+    /// Cameras; `None` where rays went in random directions.
+    pub cameras: Option<usize>,
+    /// Pixels along an image's side; `None` where rays were cast instead.
+    pub resolution: Option<u32>,
     /// Who looked.
     pub backend: &'static str,
     /// What was counted.
@@ -44,6 +44,29 @@ pub struct MeasureReport {
     pub seconds: MeasureSeconds,
     /// Which side of a triangle made its visibility.
     pub sides: &'static str,
+    /// Rays that were cast; 0 where pictures were drawn.
+    pub rays: u64,
+    /// How exact the numbers are, where the estimator can say it.
+    pub standard_error: Option<ErrorSummary>,
+}
+
+/// How exact a measurement is.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct ErrorSummary {
+    /// Standard error of V(M), one-sided.
+    pub mesh: f64,
+    /// Standard error of the triangle that 99 of 100 are more exact than.
+    pub p99: f64,
+    /// Rays cast from each side of a triangle.
+    pub samples: u32,
+    /// Why there were not more: `samples` as asked, `target` reached, `most_samples` that are allowed.
+    pub end: &'static str,
+}
+
+impl From<&StandardError> for ErrorSummary {
+    fn from(error: &StandardError) -> Self {
+        Self { mesh: error.of_mesh, p99: error.p99, samples: error.samples, end: error.end.name() }
+    }
 }
 
 /// Visibility of a whole mesh.
@@ -89,8 +112,8 @@ pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result
     }
     Ok(MeasureReport {
         triangles: loaded.mesh.triangle_count(),
-        cameras: visibility.cameras(),
-        resolution: visibility.resolution(),
+        cameras: Some(visibility.cameras()).filter(|&n| n > 0),
+        resolution: Some(visibility.resolution()).filter(|&n| n > 0),
         backend: request.measure.backend.name(),
         estimator: request.measure.estimator.name(),
         sides: request.measure.sides.name(),
@@ -100,6 +123,8 @@ pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result
             never_seen: visibility.never_seen(),
         },
         seconds: MeasureSeconds { read, build, visibility: looked, total: clock.total() },
+        rays: visibility.details().rays,
+        standard_error: visibility.details().standard_error.as_ref().map(ErrorSummary::from),
     })
 }
 

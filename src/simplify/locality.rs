@@ -7,10 +7,8 @@ use glam::DVec3;
 
 use super::frame::Frame;
 use crate::error::{Error, Result};
+use crate::geom::morton_code;
 use crate::mesh::TriMesh;
-
-/// Bits of each coordinate in a Morton code.
-const BITS: u32 = 20;
 
 /// The working number of each vertex and triangle of the input.
 #[derive(Debug)]
@@ -60,36 +58,11 @@ fn number_by_first_vertex(mesh: &TriMesh, vertices: &[u32]) -> Vec<u32> {
     mesh.triangles().iter().map(next).collect()
 }
 
-/// The coordinates' bits by turns. Points outside the unit sphere, which no triangle uses, go to its border.
-fn morton_code(x: DVec3) -> u64 {
-    let cells = f64::from(1u32 << BITS);
-    let cell = |x: f64| spread((0.5 * (x + 1.0) * cells).clamp(0.0, cells - 1.0) as u64);
-    cell(x.x) | cell(x.y) << 1 | cell(x.z) << 2
-}
-
-/// Moves bit i of a number of 20 bits to bit 3 i.
-fn spread(bits: u64) -> u64 {
-    let mut x = bits;
-    x = (x | x << 32) & 0x001f_0000_0000_ffff;
-    x = (x | x << 16) & 0x001f_0000_ff00_00ff;
-    x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
-    x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
-    (x | x << 2) & 0x1249_2492_4924_9249
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
-
-    #[test]
-    fn spread_moves_every_bit_to_thrice_its_place() {
-        for i in 0..BITS {
-            assert_eq!(spread(1 << i), 1 << (3 * i));
-        }
-        assert_eq!(spread((1 << BITS) - 1), (0..BITS).map(|i| 1 << (3 * i)).sum::<u64>());
-    }
 
     #[test]
     fn working_numbers_name_each_once_and_keep_the_mesh() {

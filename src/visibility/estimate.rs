@@ -2,7 +2,8 @@ use crate::camera::CameraSphere;
 use crate::error::Result;
 use crate::progress::Progress;
 use crate::visibility::{
-    Details, DiagramRecorder, Estimator, MeasureOptions, Shapes, Subject, Visibility, coverage, pool,
+    Details, DiagramRecorder, Estimator, MeasureOptions, Shapes, Subject, Visibility, coverage, hemisphere, pool,
+    surface,
 };
 
 /// Who looks how, for every estimator alike.
@@ -36,7 +37,9 @@ pub(super) fn estimate(subject: &Subject<'_>, looking: &Looking<'_>) -> Result<V
     }
     let found = match looking.options.estimator {
         Estimator::Coverage => coverage::estimate(subject, &shapes, looking)?,
-        other => return Err(other.unavailable()),
+        Estimator::Surface => surface::estimate(subject, &shapes, looking)?,
+        Estimator::Hemisphere => hemisphere::estimate(subject, &shapes, looking)?,
+        other @ Estimator::ItemBuffer => return Err(other.unavailable()),
     };
     finish(subject, &shapes, found, looking)
 }
@@ -56,7 +59,7 @@ fn finish(subject: &Subject<'_>, shapes: &Shapes, found: Estimate, looking: &Loo
         per_triangle,
         seen,
         resolution,
-        cameras: looking.cameras.count(),
+        cameras: if looking.options.estimator == Estimator::Hemisphere { 0 } else { looking.cameras.count() },
         front,
         back,
         details,

@@ -28,7 +28,11 @@ fn hidden_triangles(
     progress: &dyn Progress,
 ) -> Result<Vec<bool>> {
     let mut hidden: Vec<bool> = visibility.seen().iter().map(|&seen| !seen).collect();
-    let window = Window::around_sphere((2 * visibility.resolution()).min(16384));
+    let drawn = match visibility.resolution() {
+        0 => options.resolution_for(hidden.len()),
+        drawn => drawn,
+    };
+    let window = Window::around_sphere((2 * drawn).min(16384));
     for look in 0..MAX_LOOKS {
         if !hidden.iter().any(|&h| h) {
             return Ok(hidden);

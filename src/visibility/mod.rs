@@ -7,17 +7,22 @@
 mod coverage;
 mod diagram;
 mod estimate;
+mod hemisphere;
 mod hidden;
 mod importance;
 mod options;
 mod pool;
+mod ray_options;
+mod rays;
 mod shapes;
 mod subject;
+mod surface;
 
 pub use coverage::CoverageCounts;
 pub use diagram::{DiagramRecorder, VisibilityDiagram};
 pub use importance::{Hidden, importance};
 pub use options::{Estimator, MeasureOptions, Sides};
+pub use ray_options::{MOST_SAMPLES, PartlySeen, RayOptions};
 pub use subject::Subject;
 
 use crate::error::Result;
@@ -46,7 +51,7 @@ pub struct Details {
     pub standard_error: Option<StandardError>,
     /// Depth rescue, from [`Estimator::ItemBuffer`].
     pub rescue: Option<Rescue>,
-    /// Rays that were cast, 0 where pictures were drawn.
+    /// Rays that were cast; 0 where pictures were drawn.
     pub rays: u64,
 }
 
@@ -57,6 +62,35 @@ pub struct StandardError {
     pub per_triangle: Vec<f64>,
     /// Of V(M).
     pub of_mesh: f64,
+    /// Of the triangle that 99 of 100 are more exact than.
+    pub p99: f64,
+    /// Rays cast from each side of a triangle.
+    pub samples: u32,
+    /// Why there were not more.
+    pub end: SamplingEnd,
+}
+
+/// Why [`Estimator::Hemisphere`] stopped casting rays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SamplingEnd {
+    /// They are what was asked for.
+    AsAsked,
+    /// The errors asked for are reached.
+    TargetReached,
+    /// A triangle casts no more than [`MOST_SAMPLES`]; the errors asked for are not reached.
+    MostSamples,
+}
+
+impl SamplingEnd {
+    /// The name in reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::AsAsked => "samples",
+            Self::TargetReached => "target",
+            Self::MostSamples => "most_samples",
+        }
+    }
 }
 
 /// How often a triangle without a pixel was called seen by its depth; Zhang & Turk 2002, section 4.
@@ -81,7 +115,7 @@ impl Visibility {
         &self.front
     }
 
-    /// V of each triangle's back side as counted.
+    /// V of each triangle's back side as counted; 0 where [`Sides::One`] spared the rays.
     #[must_use]
     pub fn back(&self) -> &[f64] {
         &self.back
@@ -111,13 +145,13 @@ impl Visibility {
         self.seen.iter().filter(|&&s| !s).count()
     }
 
-    /// Pixels along an image's side that were used.
+    /// Pixels along an image's side that were used; 0 where rays were cast instead.
     #[must_use]
     pub fn resolution(&self) -> u32 {
         self.resolution
     }
 
-    /// Number of cameras that looked.
+    /// Number of cameras that looked; 0 where rays went in random directions.
     #[must_use]
     pub fn cameras(&self) -> usize {
         self.cameras

@@ -1,6 +1,7 @@
 use crate::backend::BackendKind;
 use crate::camera::CameraWeights;
 use crate::error::{Error, Result};
+use crate::visibility::RayOptions;
 
 /// What is counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -10,9 +11,9 @@ pub enum Estimator {
     Coverage,
     /// The paper's: a camera sees a triangle or it does not.
     ItemBuffer,
-    /// Rays from points on the triangle to the cameras.
+    /// Rays from points on the triangle to the cameras: no pixel to miss it.
     Surface,
-    /// Cosine-distributed rays.
+    /// Cosine-distributed rays from all over the triangle: the definition itself, with an error bar.
     Hemisphere,
 }
 
@@ -25,6 +26,20 @@ impl Estimator {
             Self::ItemBuffer => "item-buffer",
             Self::Surface => "surface",
             Self::Hemisphere => "hemisphere",
+        }
+    }
+
+    /// Checks that the estimator is there, and that `backend` can serve it.
+    fn check(self, backend: BackendKind) -> Result<()> {
+        match self {
+            Self::Coverage => Ok(()),
+            Self::ItemBuffer => Err(self.unavailable()),
+            Self::Surface | Self::Hemisphere if backend.casts_rays() => Ok(()),
+            Self::Surface | Self::Hemisphere => {
+                let (name, backend) = (self.name(), backend.name());
+                let message = format!("{name} needs rays, which backend {backend} does not cast; add --backend embree");
+                Err(Error::Option { name: "--estimator", message })
+            }
         }
     }
 
@@ -85,6 +100,8 @@ pub struct MeasureOptions {
     pub estimator: Estimator,
     /// Which side counts.
     pub sides: Sides,
+    /// How rays are cast, where the estimator casts any.
+    pub rays: RayOptions,
     /// Bytes that the images of all threads together may take; `None` for no limit.
     pub memory_limit: Option<u64>,
 }
@@ -98,6 +115,7 @@ impl Default for MeasureOptions {
             backend: BackendKind::Raster,
             estimator: Estimator::Coverage,
             sides: Sides::Better,
+            rays: RayOptions::default(),
             memory_limit: None,
         }
     }
@@ -139,9 +157,7 @@ impl MeasureOptions {
             });
         }
         self.backend.check()?;
-        match self.estimator {
-            Estimator::Coverage => Ok(()),
-            other => Err(other.unavailable()),
-        }
+        self.estimator.check(self.backend)?;
+        self.rays.check()
     }
 }
