@@ -35,6 +35,7 @@ use crate::visibility::{Look, Subject};
 pub fn run_simplify(request: &SimplifyRequest, observer: &dyn Observer) -> Result<SimplifyReport> {
     let mut clock = Clock::start();
     request.check()?;
+    let occluders = measure::read_occluders(&request.occluders, &request.read)?;
     let mesh = {
         let loaded = io::read(&request.input, &request.read)?;
         observer.mesh_read(&request.input, &loaded)?;
@@ -44,7 +45,7 @@ pub fn run_simplify(request: &SimplifyRequest, observer: &dyn Observer) -> Resul
     let mut seconds = SimplifySeconds { read: clock.lap(), ..SimplifySeconds::default() };
     let look = match request.metric {
         Metric::Visibility => {
-            let subject = Subject::new(&mesh, request.measure.backend)?;
+            let subject = Subject::among(&mesh, &occluders, request.measure.backend)?;
             let visibility = subject.measure(&request.measure, observer)?;
             seconds.visibility = clock.lap();
             let hidden = request.hidden.marks(&subject, &visibility, &request.measure, observer)?;

@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 use approx::assert_abs_diff_eq;
 use glam::{DMat3, DVec3};
 use outsight::backend::BackendKind;
-use outsight::camera::{CameraSphere, CameraWeights};
+use outsight::camera::{CameraSphere, CameraWeights, Cameras};
 use outsight::geom::triangle_area;
 use outsight::mesh::shapes::{self, Tagged};
 use outsight::mesh::{TriMesh, TriangleId};
@@ -74,6 +74,7 @@ fn t1_holds_with_every_number_of_cameras_and_both_weights() {
     let sphere = shapes::icosphere(4);
     for cameras in [6, 18, 66, 258, 1026] {
         for camera_weights in [CameraWeights::Area, CameraWeights::Equal] {
+            let cameras = Cameras::octahedral(cameras);
             let options = MeasureOptions { cameras, camera_weights, ..MeasureOptions::default() };
             let visibility = measure(&sphere, &options, &Silent).unwrap();
             assert_abs_diff_eq!(visibility.of_mesh(), 1.0, epsilon = 4e-3);

@@ -31,7 +31,9 @@ Examples:
   outsight measure part.ply                   visibility of the mesh, in a few lines
   outsight measure part.ply -o heat.ply       triangles coloured, with the property visibility
   outsight measure part.ply -o v.npy --json   one number per triangle for NumPy, and a summary
-  outsight measure part.ply --preset paper    as Zhang & Turk 2002 did";
+  outsight measure part.ply --preset paper    as Zhang & Turk 2002 did
+  outsight measure part.ply --hemisphere +z   never seen from below
+  outsight measure part.ply --occluder floor.ply --occluder wall.ply";
 
 /// What clap would write over two lines.
 pub const SIMPLIFY_USAGE: &str =

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::error::Result;
 use crate::io::{self, Loaded, ReadOptions, TriangleAttributes, WriteOptions};
+use crate::mesh::TriMesh;
 use crate::pipeline::{Clock, Observer};
 use crate::report::colour::ColourMap;
 use crate::visibility::{MeasureOptions, Subject, Visibility};
@@ -17,6 +18,8 @@ pub struct MeasureRequest {
     pub read: ReadOptions,
     /// How it is looked at.
     pub measure: MeasureOptions,
+    /// Meshes in the same coordinates that hide and are not measured.
+    pub occluders: Vec<PathBuf>,
     /// A mesh file (PLY carries visibility and heat colours), `.npy` or `.csv` to write.
     pub output: Option<PathBuf>,
     /// Heat colours in a PLY output.
@@ -44,6 +47,8 @@ pub struct MeasureReport {
     pub seconds: MeasureSeconds,
     /// Which side of a triangle made its visibility.
     pub sides: &'static str,
+    /// Triangles of occluders.
+    pub occluder_triangles: usize,
 }
 
 /// Visibility of a whole mesh.
@@ -77,10 +82,11 @@ pub struct MeasureSeconds {
 pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result<MeasureReport> {
     let mut clock = Clock::start();
     request.measure.check()?;
+    let occluders = read_occluders(&request.occluders, &request.read)?;
     let loaded = io::read(&request.input, &request.read)?;
     observer.mesh_read(&request.input, &loaded)?;
     let read = clock.lap();
-    let subject = Subject::new(&loaded.mesh, request.measure.backend)?;
+    let subject = Subject::among(&loaded.mesh, &occluders, request.measure.backend)?;
     let build = clock.lap();
     let visibility = subject.measure(&request.measure, observer)?;
     let looked = clock.lap();
@@ -94,6 +100,7 @@ pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result
         backend: request.measure.backend.name(),
         estimator: request.measure.estimator.name(),
         sides: request.measure.sides.name(),
+        occluder_triangles: occluders.iter().map(TriMesh::triangle_count).sum(),
         visibility: VisibilitySummary {
             mesh: visibility.of_mesh(),
             mesh_sides: visibility.of_mesh_sides(),
@@ -101,6 +108,13 @@ pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result
         },
         seconds: MeasureSeconds { read, build, visibility: looked, total: clock.total() },
     })
+}
+
+/// Reads what stands around a mesh.
+pub(super) fn read_occluders(paths: &[PathBuf], options: &ReadOptions) -> Result<Vec<TriMesh>> {
+    // The format is told for the mesh alone.
+    let options = ReadOptions { format: None, ..options.clone() };
+    paths.iter().map(|path| Ok(io::read(path, &options)?.mesh)).collect()
 }
 
 fn write(path: &Path, loaded: &Loaded, visibility: &Visibility, request: &MeasureRequest) -> Result<()> {
