@@ -6,14 +6,16 @@
 //! mesh file → io → mesh → camera → backend → visibility → weights → simplify → io → mesh file
 //! ```
 //!
-//! [`measure_file`], [`compare_files`] and [`render_file`] leave it early or look at its two ends.
+//! [`measure_file`], [`compare_files`] [`render_file`] and [`study_convergence`] leave it early or look at its two ends.
 
 mod compare;
+mod convergence;
 mod measure;
 mod render;
 mod simplify;
 
 pub use compare::{CompareReport, CompareRequest, GeometricReport, TestReport, compare_files};
+pub use convergence::{ConvergenceError, ConvergenceReport, ConvergenceRequest, MeshConvergence, study_convergence};
 pub use measure::{MeasureReport, MeasureRequest, MeasureSeconds, VisibilitySummary, measure_file};
 pub use render::{RenderRequest, Style, render_file};
 pub use simplify::{

@@ -497,3 +497,23 @@ fn an_enclosure_hides_all_and_is_never_written() {
     assert_eq!(ended.code, 2);
     assert!(ended.err.contains("--occluder: --metric quadric does not look"), "{}", ended.err);
 }
+
+#[test]
+fn convergence_is_written_whole_and_shows_both_weights() {
+    let home = directory();
+    let study = ["study", "convergence", "cube.off", "-o", "study", "--resolution", "32", "--json"];
+    let object = json(home.path(), &study);
+    let errors = object["meshes"][0]["errors"].as_array().unwrap();
+    assert_eq!(errors.len(), 12);
+    assert_eq!((&errors[0]["cameras"], &errors[1]["weights"]), (&6.into(), &"area".into()));
+    assert!(errors[11]["against_4098"].is_null());
+    assert_eq!(names(&home.path().join("study")), ["convergence.csv", "convergence.json", "convergence.svg"]);
+    let csv = fs::read_to_string(home.path().join("study/convergence.csv")).unwrap();
+    assert_eq!(csv.lines().count(), 13);
+    assert!(fs::read_to_string(home.path().join("study/convergence.svg")).unwrap().contains("cube.off, area"));
+    let again = run(home.path(), &study);
+    assert_eq!(again.code, 4, "nothing is overwritten without --force");
+    let stopped = run(home.path(), &["study", "convergence", "cube.off", "-o", "other", "--time-limit", "0.000001"]);
+    assert_eq!(stopped.code, 5);
+    assert!(names(&home.path().join("other")).is_empty());
+}

@@ -72,6 +72,14 @@ Examples:
   outsight convert part.obj part.off --weld
   outsight convert - out.ply --input-format stl < in.stl";
 
+/// Behind `outsight study convergence --help`.
+pub const STUDY_CONVERGENCE: &str = "\
+Compares visibility from 6 to 4098 octahedral cameras, counted alike and by the solid angle they
+own, with the most of them, and with 4096 cameras of another pattern.
+
+Example:
+  outsight study convergence part.ply bunny.ply -o convergence/";
+
 /// Behind `outsight doctor --help`.
 pub const DOCTOR: &str = "\
 Ends with code 1 if the self-check fails.
