@@ -88,13 +88,14 @@ fn few_listed_cameras_are_no_reason_to_delete_what_they_miss() {
     assert!(looked.hidden.iter().all(|&h| !h));
 }
 
-/// The spiral's upper half: no camera has an opposite one. The sphere is convex, so that each triangle is seen whole by
+/// The spiral's upper end: no camera has an opposite one. The sphere is convex, so that each triangle is seen whole by
 /// every camera before it, and numerator and denominator are the same sum.
 #[test]
 fn cameras_without_opposites_see_a_convex_solid_whole_where_they_see_it() {
     let sphere = shapes::icosphere(3);
     let spiral = CameraSphere::fibonacci(130).unwrap();
-    let listed = spiral.directions().iter().step_by(2).enumerate().map(|(i, &d)| (d, 1.0 + (i % 3) as f64)).collect();
+    let looking = || spiral.directions().iter().step_by(2).take(50);
+    let listed = looking().enumerate().map(|(i, &d)| (d, 1.0 + (i % 3) as f64)).collect();
     let list = CameraList { name: "half".to_owned(), cameras: listed };
     let cameras = Cameras { pattern: CameraPattern::Listed(list), ..Cameras::default() };
     for backend in [BackendKind::Raster, BackendKind::Brute] {
@@ -104,7 +105,7 @@ fn cameras_without_opposites_see_a_convex_solid_whole_where_they_see_it() {
         assert!(seen.back().iter().all(|&v| v == 0.0));
         let above = facing(&sphere, DVec3::Z);
         let normal = |t: &usize| outsight::geom::triangle_normal(sphere.corners(TriangleId(*t as u32))).unwrap();
-        let is_dark = |t: &usize| spiral.directions().iter().step_by(2).all(|d| d.dot(normal(t)) < -1e-3);
+        let is_dark = |t: &usize| looking().all(|d| d.dot(normal(t)) < -1e-3);
         let dark: Vec<usize> = (0..sphere.triangle_count()).filter(is_dark).collect();
         assert!(!dark.is_empty() && dark.iter().all(|&t| seen.front()[t] == 0.0));
         assert_abs_diff_eq!(
