@@ -94,7 +94,10 @@ impl LogLogPlot {
             let most = points().map(value).fold(0.0, f64::max);
             if least <= most { (least / 1.3, most * 1.3) } else { (0.1, 1.0) }
         };
-        [range(|p| p.0), range(|p| p.1)]
+        let (x, y) = (range(|p| p.0), range(|p| p.1));
+        // Whole decades of y, so that enough of its numbers are round and the legend finds room.
+        let decade = |round: fn(f64) -> f64, y: f64| libm::pow(10.0, round(libm::log10(y)));
+        [x, (decade(f64::floor, y.0), decade(f64::ceil, y.1))]
     }
 
     fn draw_panel<B: DrawingBackend>(&self, panel: &Panel, area: &DrawingArea<B, Shift>, ranges: Ranges) -> Drawn<B> {
@@ -110,7 +113,7 @@ impl LogLogPlot {
             .x_desc(&self.x)
             .y_desc(&self.y)
             .x_label_formatter(&|x| format!("{x:.0}"))
-            .y_label_formatter(&|y| format!("{y}"))
+            .y_label_formatter(&|y| plain(*y))
             .label_style(("sans-serif", 14))
             .axis_desc_style(("sans-serif", 15))
             .light_line_style(RGBColor(235, 235, 235))
@@ -144,6 +147,12 @@ impl LogLogPlot {
 /// Points that a logarithmic axis can show.
 fn visible(curve: &Curve) -> Vec<(f64, f64)> {
     curve.points.iter().copied().filter(|&(x, y)| x > 0.0 && y > 0.0).collect()
+}
+
+/// A number without the digits that only rounding gave it: `0.3`, not `0.30000000000000004`.
+fn plain(number: f64) -> String {
+    let digits = format!("{number:.9}");
+    digits.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 fn draw_curve<'a, B: DrawingBackend + 'a>(chart: &mut Chart<'a, B>, curve: &Curve, colour: RGBColor) -> Drawn<B> {
