@@ -6,14 +6,16 @@
 //! mesh file → io → mesh → camera → backend → visibility → weights → simplify → io → mesh file
 //! ```
 //!
-//! [`measure_file`], [`compare_files`] and [`render_file`] leave it early or look at its two ends.
+//! [`measure_file`], [`compare_files`] [`render_file`] and [`study_convergence`] leave it early or look at its two ends.
 
 mod compare;
+mod convergence;
 mod measure;
 mod render;
 mod simplify;
 
 pub use compare::{CompareReport, CompareRequest, GeometricReport, TestReport, compare_files};
+pub use convergence::{ConvergenceError, ConvergenceReport, ConvergenceRequest, MeshConvergence, study_convergence};
 pub use measure::{ErrorSummary, MeasureReport, MeasureRequest, MeasureSeconds, VisibilitySummary, measure_file};
 pub use render::{RenderRequest, Style, render_file};
 pub use simplify::{
@@ -35,6 +37,7 @@ use crate::visibility::{Look, Subject};
 pub fn run_simplify(request: &SimplifyRequest, observer: &dyn Observer) -> Result<SimplifyReport> {
     let mut clock = Clock::start();
     request.check()?;
+    let occluders = measure::read_occluders(&request.occluders, &request.read)?;
     let mesh = {
         let loaded = io::read(&request.input, &request.read)?;
         observer.mesh_read(&request.input, &loaded)?;
@@ -44,7 +47,7 @@ pub fn run_simplify(request: &SimplifyRequest, observer: &dyn Observer) -> Resul
     let mut seconds = SimplifySeconds { read: clock.lap(), ..SimplifySeconds::default() };
     let look = match request.metric {
         Metric::Visibility => {
-            let subject = Subject::new(&mesh, request.measure.backend)?;
+            let subject = Subject::among(&mesh, &occluders, request.measure.backend)?;
             let visibility = subject.measure(&request.measure, observer)?;
             seconds.visibility = clock.lap();
             let hidden = request.hidden.marks(&subject, &visibility, &request.measure, observer)?;

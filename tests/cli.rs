@@ -437,3 +437,99 @@ fn signals_end_the_work_and_leave_no_file() {
         assert_eq!(names(home.path()), ["bumps.off", "cube.off"]);
     }
 }
+
+#[test]
+fn cameras_in_force_are_named() {
+    let home = directory();
+    fs::write(home.path().join("ring.csv"), "x,y,z,weight\n1,0,0,2\n0,1,0,1\n0,0,1,1\n").unwrap();
+    let options = |flags: &[&str]| {
+        let object = json(home.path(), &[&["measure", "cube.off", "--json", "--resolution", "64"], flags].concat());
+        (object["cameras"].clone(), object["options"].clone())
+    };
+    let (looking, named) = options(&["--camera-file", "ring.csv"]);
+    assert_eq!((looking, &named["cameras"], &named["camera_pattern"]), (3.into(), &3.into(), &"file".into()));
+    assert_eq!(named["camera_file"], "ring.csv");
+    let (looking, named) = options(&["--camera-pattern", "fibonacci", "--cameras", "50", "--camera-rotation", "7"]);
+    assert_eq!((looking, &named["camera_pattern"]), (50.into(), &"fibonacci".into()));
+    assert_eq!((&named["camera_rotation"], &named["hemisphere"]), (&7.into(), &Value::Null));
+    let (looking, named) = options(&["--camera-pattern", "latlong", "--hemisphere", "-z"]);
+    assert_eq!((looking, &named["cameras"]), ((133 + 12).into(), &266.into()), "the equator is kept, and counts half");
+    assert_eq!(named["hemisphere"], serde_json::json!([0.0, 0.0, -1.0]));
+}
+
+#[test]
+fn cameras_that_cannot_look_are_refused_before_the_work() {
+    let home = directory();
+    let list = |text: &str| {
+        fs::write(home.path().join("c.txt"), text).unwrap();
+        run(home.path(), &["measure", "cube.off", "--camera-file", "c.txt"])
+    };
+    for (text, message) in [
+        ("1 0 0\n0 0 0\n", "error: c.txt, line 2: 0 0 0 is no direction"),
+        ("1 0 0\n", "error: c.txt: a single camera"),
+        ("1 0 0\n0 nan 0\n", "error: c.txt, line 2: the coordinate `nan` is not finite"),
+        ("1 0 0\n0 1\n", "error: c.txt, line 2: a camera is x y z"),
+        ("", "error: c.txt: no cameras"),
+    ] {
+        let ended = list(text);
+        assert_eq!(ended.code, 3, "{text}");
+        assert!(ended.err.starts_with(message), "{}", ended.err);
+    }
+    let usage = |flags: &[&str]| {
+        let ended = run(home.path(), &[&["measure", "cube.off"], flags].concat());
+        assert_eq!(ended.code, 2, "{flags:?}");
+        ended.err
+    };
+    assert!(usage(&["--cameras", "100"]).contains("6, 18, 66"));
+    assert!(usage(&["--cameras", "7", "--camera-pattern", "fibonacci"]).contains("an even one"));
+    assert!(usage(&["--cameras", "18", "--camera-pattern", "latlong"]).contains("266"));
+    assert!(usage(&["--camera-file", "c.txt", "--cameras", "18"]).contains("cannot be used with"));
+    assert!(usage(&["--hemisphere", "up"]).contains("+y or -z"));
+    for resolution in ["0", "16385"] {
+        assert!(usage(&["--resolution", resolution]).contains("16..=16384"));
+    }
+    assert_eq!(run(home.path(), &["measure", "cube.off", "--camera-file", "missing.txt"]).code, 3);
+}
+
+#[test]
+fn an_enclosure_hides_all_and_is_never_written() {
+    let home = directory();
+    let shell: String = CUBE
+        .lines()
+        .map(|l| {
+            let is_vertex = l.split(' ').count() == 3 && l.contains('1') && !l.starts_with("8 ");
+            if is_vertex { l.replace('1', "3") + "\n" } else { l.to_owned() + "\n" }
+        })
+        .collect();
+    fs::write(home.path().join("shell.off"), shell).unwrap();
+    let object =
+        json(home.path(), &[&["measure", "cube.off", "--json", "--occluder", "shell.off"][..], &SMALL].concat());
+    assert_eq!((&object["visibility"]["mesh"], &object["visibility"]["never_seen"]), (&0.0.into(), &12.into()));
+    assert_eq!((&object["triangles"], &object["occluder_triangles"]), (&12.into(), &12.into()));
+    let ended = run(
+        home.path(),
+        &["simplify", "cube.off", "-o", "x.ply", "-t", "6", "--metric", "quadric", "--occluder", "shell.off"],
+    );
+    assert_eq!(ended.code, 2);
+    assert!(ended.err.contains("--occluder: --metric quadric does not look"), "{}", ended.err);
+}
+
+#[test]
+fn convergence_is_written_whole_and_shows_both_weights() {
+    let home = directory();
+    let study = ["study", "convergence", "cube.off", "-o", "study", "--resolution", "32", "--json"];
+    let object = json(home.path(), &study);
+    let errors = object["meshes"][0]["errors"].as_array().unwrap();
+    assert_eq!(errors.len(), 12);
+    assert_eq!((&errors[0]["cameras"], &errors[1]["weights"]), (&6.into(), &"area".into()));
+    assert!(errors[11]["against_4098"].is_null());
+    assert_eq!(names(&home.path().join("study")), ["convergence.csv", "convergence.json", "convergence.svg"]);
+    let csv = fs::read_to_string(home.path().join("study/convergence.csv")).unwrap();
+    assert_eq!(csv.lines().count(), 13);
+    assert!(fs::read_to_string(home.path().join("study/convergence.svg")).unwrap().contains("cube.off, area"));
+    let again = run(home.path(), &study);
+    assert_eq!(again.code, 4, "nothing is overwritten without --force");
+    let stopped = run(home.path(), &["study", "convergence", "cube.off", "-o", "other", "--time-limit", "0.000001"]);
+    assert_eq!(stopped.code, 5);
+    assert!(names(&home.path().join("other")).is_empty());
+}

@@ -5,7 +5,7 @@
 use glam::DVec3;
 use outsight::Error;
 use outsight::backend::BackendKind;
-use outsight::camera::{CameraSphere, CameraWeights};
+use outsight::camera::{CameraSphere, CameraWeights, Cameras};
 use outsight::mesh::shapes::{self, Tagged};
 use outsight::mesh::{TriMesh, TriangleId};
 use outsight::progress::Silent;
@@ -15,7 +15,8 @@ use outsight::visibility::{
 };
 
 fn options(estimator: Estimator, rays: RayOptions) -> MeasureOptions {
-    MeasureOptions { backend: BackendKind::Brute, estimator, cameras: 66, rays, ..MeasureOptions::default() }
+    let cameras = Cameras::octahedral(66);
+    MeasureOptions { backend: BackendKind::Brute, estimator, cameras, rays, ..MeasureOptions::default() }
 }
 
 fn surface(points: u32) -> MeasureOptions {
@@ -36,7 +37,7 @@ fn clutter() -> Tagged {
 }
 
 fn with_diagram(mesh: &TriMesh, options: &MeasureOptions) -> (Visibility, VisibilityDiagram, CameraSphere) {
-    let cameras = CameraSphere::octahedral(options.cameras, options.camera_weights).unwrap();
+    let cameras = options.cameras.sphere(options.camera_weights).unwrap();
     let recorder = DiagramRecorder::new(mesh.triangle_count(), cameras.count(), None).unwrap();
     let subject = Subject::new(mesh, options.backend).unwrap();
     let visibility = subject.measure_from(&cameras, options, Some(&recorder), &Silent).unwrap();
@@ -101,12 +102,10 @@ fn the_diagram_holds_what_the_visibility_is_made_of() {
     for t in 0..mesh.triangle_count() {
         let (_, normal) = subject.frame().area_and_normal(&mesh, TriangleId(t as u32)).unwrap();
         let (mut seen, mut all) = (0.0, 0.0);
-        for axis in cameras.axes() {
-            for camera in [axis.near, axis.far] {
-                let cosine = cameras.directions()[camera as usize].dot(normal).max(0.0) * axis.weight as f64;
-                all += cosine;
-                seen += if diagram.sees(TriangleId(t as u32), camera as usize) { cosine } else { 0.0 };
-            }
+        for (camera, direction) in cameras.directions().iter().enumerate() {
+            let cosine = direction.dot(normal).max(0.0) * cameras.weight(camera as u32) as f64;
+            all += cosine;
+            seen += if diagram.sees(TriangleId(t as u32), camera) { cosine } else { 0.0 };
         }
         assert!((visibility.front()[t] - seen / all).abs() < 1e-12, "triangle {t}");
     }

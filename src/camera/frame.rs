@@ -1,7 +1,8 @@
 use glam::DVec3;
 
+use crate::error::{Error, Result};
 use crate::geom;
-use crate::mesh::{TriMesh, TriangleId};
+use crate::mesh::{MAX_TRIANGLES, TriMesh, TriangleId};
 
 /// The sphere that cameras look at: centre of a mesh's box and distance of its farthest vertex.
 ///
@@ -17,12 +18,17 @@ pub struct Frame {
 /// Triangles below this area, in unit-sphere units, are not seen and hide nothing.
 const DEGENERATE_AREA: f64 = 1e-14;
 
+/// How far the sheets of an occluder stand apart, as a share of the reach of the scene: hundreds of times what positions
+/// and depths are rounded by, and a hundredth of a pixel.
+const CONTACT: f64 = 4e-6;
+
 /// A mesh in the unit sphere, narrowed to `f32`: what rasters and rays work on.
 #[derive(Debug, Clone)]
 pub struct UnitMesh {
     /// Vertex positions; those of the framed mesh itself lie in the unit ball.
     pub positions: Vec<[f32; 3]>,
-    /// Triangles that can be seen, with their numbers in the mesh; degenerate ones are left out.
+    /// Triangles that can be seen, with their numbers in the mesh; degenerate ones are left out. Occluders have the
+    /// numbers behind the mesh's own, several triangles of one number each: see [`Frame::unit_copy_among`].
     pub triangles: Vec<([u32; 3], TriangleId)>,
     /// Largest distance of a vertex in use from the centre; 1 up to rounding for the framed mesh itself.
     pub extent: f64,
@@ -59,6 +65,46 @@ impl Frame {
             positions: mesh.positions().iter().map(|&p| unit(p).as_vec3().to_array()).collect(),
             triangles: visible.map(|(id, &t)| (t, id)).collect(),
             extent: corners_of_all(mesh).map(|p| unit(p).length()).fold(0.0, f64::max),
+        }
+    }
+
+    /// The mesh as seen in this frame, with occluders that stand around it in the same coordinates.
+    ///
+    /// Triangle t of the first occluder gets the number T + t, with T triangles in the mesh; the next occluder follows. Each
+    /// is three sheets, itself and a shifted copy to either side, a few millionths apart: surface that lies on an
+    /// occluder, as a part on a floor, is between them and hidden, whatever rounding says.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] if there are more triangles than can be numbered.
+    pub fn unit_copy_among(&self, mesh: &TriMesh, occluders: &[TriMesh]) -> Result<UnitMesh> {
+        let around: usize = occluders.iter().map(TriMesh::triangle_count).sum();
+        let positions = mesh.vertex_count() + 9 * around;
+        if mesh.triangle_count() + around > MAX_TRIANGLES || positions > u32::MAX as usize {
+            let message = format!("occluders of {around} triangles are more than can be numbered; take simpler ones");
+            return Err(Error::Limit { message });
+        }
+        let mut unit = self.unit_copy(mesh);
+        let reach = |o: &TriMesh| corners_of_all(o).map(|p| self.to_unit(p).length()).fold(0.0, f64::max);
+        unit.extent = occluders.iter().map(reach).fold(unit.extent, f64::max);
+        let shift = CONTACT * unit.extent;
+        unit.extent += shift;
+        let mut first = mesh.triangle_count() as u32;
+        for occluder in occluders {
+            self.append_sheets(occluder, first, shift, &mut unit);
+            first += occluder.triangle_count() as u32;
+        }
+        Ok(unit)
+    }
+
+    fn append_sheets(&self, occluder: &TriMesh, first: u32, shift: f64, unit: &mut UnitMesh) {
+        for t in 0..occluder.triangle_count() as u32 {
+            let Some((_, normal)) = self.area_and_normal(occluder, TriangleId(t)) else { continue };
+            let corners = occluder.corners(TriangleId(t)).map(|p| self.to_unit(p));
+            for distance in [-shift, 0.0, shift] {
+                let next = unit.positions.len() as u32;
+                unit.positions.extend(corners.map(|p| (p + distance * normal).as_vec3().to_array()));
+                unit.triangles.push(([next, next + 1, next + 2], TriangleId(first + t)));
+            }
         }
     }
 

@@ -17,6 +17,11 @@ pub enum Task {
         /// Pixels along the side; 0 where not known before reading.
         resolution: u32,
     },
+    /// Measures from many patterns at once.
+    Study {
+        /// Pixels along the side; 0 where not known before reading.
+        resolution: u32,
+    },
     /// Draws and compares meshes.
     Compare,
 }
@@ -27,6 +32,8 @@ const FLOOR_BYTES: u64 = 24 << 20;
 const READ_BYTES: u64 = 64;
 /// A triangle while it is looked at: its `f32` copy, its two counts, its visibility.
 const MEASURE_BYTES: u64 = 120;
+/// A triangle in a study, besides: a count and a visibility for each of twelve patterns.
+const STUDY_BYTES: u64 = 192;
 /// A triangle while it is simplified: quadrics, heap and rings of its share of vertices and edges.
 const SIMPLIFY_BYTES: u64 = 250;
 /// A triangle while it is compared: the search tree and the samples.
@@ -45,6 +52,7 @@ pub fn memory_bytes(task: Task, triangles: usize) -> u64 {
         Task::Read => 0,
         Task::Measure { resolution } => MEASURE_BYTES * triangles + images(resolution),
         Task::Simplify { resolution } => SIMPLIFY_BYTES.max(MEASURE_BYTES) * triangles + images(resolution),
+        Task::Study { resolution } => (MEASURE_BYTES + STUDY_BYTES) * triangles + images(resolution),
         Task::Compare => COMPARE_BYTES * triangles,
     };
     FLOOR_BYTES + READ_BYTES * triangles + working

@@ -12,6 +12,7 @@ use outsight::io::{Format, ReadOptions};
 use outsight::report::colour::ColourMap;
 use outsight::visibility::{Estimator, PartlySeen, Sides};
 
+use super::cameras::CameraFlags;
 use super::progress::Show;
 use super::values;
 
@@ -108,9 +109,8 @@ pub struct LookingFlags {
     /// Defaults for the best results, or near the text of Zhang & Turk 2002
     #[arg(long, value_name = "NAME", default_value = "best")]
     pub preset: Preset,
-    /// Cameras around the mesh: 6, 18, 66, 258, 1026, 4098 [default: 258]
-    #[arg(long, value_name = "N", value_parser = values::cameras)]
-    pub cameras: Option<usize>,
+    #[command(flatten)]
+    pub cameras: CameraFlags,
     /// Cameras count by the solid angle they own, or alike [best: area, paper: equal]
     #[arg(long, value_name = "HOW")]
     pub camera_weights: Option<CameraWeightsName>,
@@ -163,6 +163,15 @@ impl RayFlags {
         ];
         all.into_iter().filter(|(given, ..)| *given).map(|(_, name, estimator)| (name, estimator))
     }
+}
+
+/// What stands around the mesh.
+#[derive(Debug, Clone, Default, Args)]
+#[command(next_help_heading = "Looking")]
+pub struct OccluderFlags {
+    /// Mesh in the same coordinates that hides and is not measured, as a floor; may be given several times
+    #[arg(long = "occluder", value_name = "FILE")]
+    pub occluders: Vec<PathBuf>,
 }
 
 /// A set of defaults.

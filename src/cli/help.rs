@@ -31,7 +31,9 @@ Examples:
   outsight measure part.ply                   visibility of the mesh, in a few lines
   outsight measure part.ply -o heat.ply       triangles coloured, with the property visibility
   outsight measure part.ply -o v.npy --json   one number per triangle for NumPy, and a summary
-  outsight measure part.ply --preset paper    as Zhang & Turk 2002 did";
+  outsight measure part.ply --preset paper    as Zhang & Turk 2002 did
+  outsight measure part.ply --hemisphere +z   never seen from below
+  outsight measure part.ply --occluder floor.ply --occluder wall.ply";
 
 /// What clap would write over two lines.
 pub const SIMPLIFY_USAGE: &str =
@@ -69,6 +71,14 @@ Examples:
   outsight convert scan.stl scan.ply.zst
   outsight convert part.obj part.off --weld
   outsight convert - out.ply --input-format stl < in.stl";
+
+/// Behind `outsight study convergence --help`.
+pub const STUDY_CONVERGENCE: &str = "\
+Compares visibility from 6 to 4098 octahedral cameras, counted alike and by the solid angle they
+own, with the most of them, and with 4096 cameras of another pattern.
+
+Example:
+  outsight study convergence part.ply bunny.ply -o convergence/";
 
 /// Behind `outsight doctor --help`.
 pub const DOCTOR: &str = "\

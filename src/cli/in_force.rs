@@ -1,6 +1,6 @@
 //! The options that were in force, as JSON: each under the name and value of its flag.
 
-use outsight::camera::CameraWeights;
+use outsight::camera::{CameraPattern, CameraSphere, CameraWeights};
 use outsight::pipeline::SimplifyRequest;
 use outsight::simplify::{Boundary, PlaneWeight, Topology};
 use outsight::visibility::MeasureOptions;
@@ -9,11 +9,18 @@ use serde_json::{Value, json};
 /// Options of measuring. A resolution of `null` was chosen by the number of triangles.
 pub fn measure(options: &MeasureOptions) -> Value {
     json!({
-        "cameras": options.cameras,
+        "cameras": camera_count(&options.cameras.pattern),
         "camera_weights": match options.camera_weights {
             CameraWeights::Area => "area",
             CameraWeights::Equal => "equal",
         },
+        "camera_pattern": options.cameras.pattern.name(),
+        "camera_file": match &options.cameras.pattern {
+            CameraPattern::Listed(list) => Some(&list.name),
+            _ => None,
+        },
+        "camera_rotation": options.cameras.rotation,
+        "hemisphere": options.cameras.hemisphere.map(|toward| toward.to_array()),
         "resolution": options.resolution,
         "backend": options.backend.name(),
         "estimator": options.estimator.name(),
@@ -25,6 +32,15 @@ pub fn measure(options: &MeasureOptions) -> Value {
         "target_error_p99": options.rays.target_error_p99,
         "seed": options.rays.seed,
     })
+}
+
+/// Cameras of the pattern, before a hemisphere takes some away.
+fn camera_count(pattern: &CameraPattern) -> usize {
+    match pattern {
+        CameraPattern::Octahedral(count) | CameraPattern::Fibonacci(count) => *count,
+        CameraPattern::Latlong => CameraSphere::LATLONG,
+        CameraPattern::Listed(list) => list.cameras.len(),
+    }
 }
 
 /// Options of simplifying, and of measuring under `measure`.

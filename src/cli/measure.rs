@@ -1,6 +1,6 @@
 //! `outsight measure`: the visibility of every triangle.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use outsight::pipeline::{ErrorSummary, MeasureReport, MeasureRequest, measure_file};
@@ -12,7 +12,7 @@ use serde_json::Value;
 use super::console::Console;
 use super::estimate::Task;
 use super::failure::Failure;
-use super::flags::{ColourMapName, InputFlags, LookingFlags};
+use super::flags::{ColourMapName, InputFlags, LookingFlags, OccluderFlags};
 use super::in_force;
 use super::outputs::{self, Kind, Planned, ending_of};
 use super::presets;
@@ -32,6 +32,8 @@ pub struct Flags {
     colour_map: ColourMapName,
     #[command(flatten)]
     looking: LookingFlags,
+    #[command(flatten)]
+    around: OccluderFlags,
 }
 
 /// The library's report with what only the program knows.
@@ -43,6 +45,7 @@ struct Object<'a> {
     #[serde(flatten)]
     found: Found,
     output: &'a Option<PathBuf>,
+    occluders: &'a [PathBuf],
     options: Value,
 }
 
@@ -51,7 +54,8 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
     let request = request(flags, console)?;
     if let Some(path) = &request.output {
         let planned = Planned { path, kind: Kind::Visibility, format: None };
-        outputs::check(planned, &[&request.input], request.force)?;
+        let inputs: Vec<&Path> = request.occluders.iter().chain([&request.input]).map(PathBuf::as_path).collect();
+        outputs::check(planned, &inputs, request.force)?;
     }
     presets::announce_stand_ins(&flags.looking, console);
     let task = Task::Measure { resolution: request.measure.resolution.unwrap_or(0) };
@@ -63,6 +67,7 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
         peak_mb: peak_mib(),
         found: watch.found(),
         output: &request.output,
+        occluders: &request.occluders,
         options: in_force::measure(&request.measure),
     };
     console.result(&object, &text(&report, &request), true)
@@ -73,6 +78,7 @@ fn request(flags: &Flags, console: &Console) -> outsight::Result<MeasureRequest>
         input: flags.input.mesh.clone(),
         read: flags.input.reading.options(&console.global),
         measure: presets::measure_options(&flags.looking, &console.global)?,
+        occluders: flags.around.occluders.clone(),
         output: flags.output.clone(),
         colour_map: flags.colour_map.into(),
         force: console.global.force,
@@ -94,6 +100,9 @@ fn text(report: &MeasureReport, request: &MeasureRequest) -> String {
     }
     if let Some(error) = &report.standard_error {
         rows.insert(1, ("standard error", exactness(error, &request.measure.rays)));
+    }
+    if report.occluder_triangles > 0 {
+        rows.insert(2, ("around it", format!("{} triangles of occluders", count(report.occluder_triangles))));
     }
     if let Some(output) = &request.output {
         rows.push(("written", output.display().to_string()));

@@ -4,6 +4,7 @@
 //! the first, `flags` and `presets` the second, `failure` the third.
 
 mod bundled;
+mod cameras;
 mod collapsing;
 mod compare;
 mod completions;
@@ -25,6 +26,7 @@ mod progress;
 mod render;
 mod signals;
 mod simplify;
+mod study;
 mod system;
 mod text;
 mod values;
@@ -72,6 +74,8 @@ enum Command {
     /// Write a mesh in another format
     #[command(after_help = help::CONVERT)]
     Convert(convert::Flags),
+    /// Make tables and figures about the method itself
+    Study(study::Flags),
     /// Say what works on this machine, and why the rest does not
     #[command(after_help = help::DOCTOR)]
     Doctor(doctor::Flags),
@@ -131,6 +135,7 @@ fn dispatch(command: &Command, console: &Console) -> Result<(), Failure> {
         Command::Compare(flags) => compare::run(flags, console),
         Command::Render(flags) => render::run(flags, console),
         Command::Convert(flags) => convert::run(flags, console),
+        Command::Study(flags) => study::run(flags, console),
         Command::Doctor(flags) => doctor::run(flags, console),
         Command::Completions(flags) => completions::run(flags, console),
         Command::Man(flags) => man::run(flags, console),

@@ -16,14 +16,14 @@ pub const VISIBILITY_POWER: f64 = 2.0;
 ///
 /// # Errors
 /// [`Error::Unavailable`] for a backend or an estimator that this version does not have, [`Error::Option`] for flags that
-/// do not go together.
+/// do not go together; as [`super::cameras::CameraFlags::cameras`].
 pub fn measure_options(flags: &LookingFlags, global: &GlobalFlags) -> Result<MeasureOptions> {
     let preset = match flags.preset {
         Preset::Best => MeasureOptions::default(),
         Preset::Paper => MeasureOptions::paper(),
     };
     let options = MeasureOptions {
-        cameras: flags.cameras.unwrap_or(preset.cameras),
+        cameras: flags.cameras.cameras(preset.cameras)?,
         camera_weights: flags.camera_weights.map_or(preset.camera_weights, Into::into),
         resolution: flags.resolution.or(preset.resolution),
         backend: flags.backend.map_or(preset.backend, Into::into),

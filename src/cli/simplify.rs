@@ -13,7 +13,7 @@ use super::collapsing::CollapseFlags;
 use super::console::Console;
 use super::estimate::Task;
 use super::failure::Failure;
-use super::flags::{FormatName, InputFlags, LookingFlags};
+use super::flags::{FormatName, InputFlags, LookingFlags, OccluderFlags};
 use super::in_force;
 use super::outputs::{self, Kind, Planned, is_pipe};
 use super::presets;
@@ -50,6 +50,8 @@ pub struct Flags {
     collapse: CollapseFlags,
     #[command(flatten)]
     looking: LookingFlags,
+    #[command(flatten)]
+    around: OccluderFlags,
 }
 
 /// The library's report with what only the program knows.
@@ -60,6 +62,7 @@ struct Object<'a> {
     peak_mb: Option<f64>,
     #[serde(flatten)]
     found: Found,
+    occluders: &'a [PathBuf],
     options: Value,
 }
 
@@ -79,8 +82,13 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
             console.announce(&format!("{file}: {reached} triangles instead of {wanted}: nothing more may collapse"));
         }
     }
-    let object =
-        Object { report: &report, peak_mb: peak_mib(), found: watch.found(), options: in_force::simplify(&request) };
+    let object = Object {
+        report: &report,
+        peak_mb: peak_mib(),
+        found: watch.found(),
+        occluders: &request.occluders,
+        options: in_force::simplify(&request),
+    };
     let to_stdout = !request.levels.iter().any(|level| is_pipe(&level.output));
     console.result(&object, &text(&report), to_stdout)
 }
@@ -93,6 +101,7 @@ fn request(flags: &Flags, console: &Console) -> outsight::Result<SimplifyRequest
         read: flags.input.reading.options(&console.global),
         metric,
         measure: presets::measure_options(&flags.looking, &console.global)?,
+        occluders: flags.around.occluders.clone(),
         hidden: presets::hidden(&flags.collapse, preset, metric)?,
         visibility_power: presets::visibility_power(&flags.collapse),
         simplify: SimplifyOptions { max_error: flags.max_error, ..presets::simplify_options(&flags.collapse, preset)? },
@@ -123,13 +132,14 @@ fn levels(flags: &Flags) -> outsight::Result<Vec<LevelRequest>> {
 }
 
 fn check_outputs(request: &SimplifyRequest, json: bool) -> outsight::Result<()> {
+    let inputs: Vec<&Path> = request.occluders.iter().chain([&request.input]).map(PathBuf::as_path).collect();
     for level in &request.levels {
         let path: &Path = &level.output;
         if is_pipe(path) && json {
             let message = "standard output cannot hold both a mesh and --json; name a file".to_owned();
             return Err(Error::Option { name: "--output", message });
         }
-        outputs::check(Planned { path, kind: Kind::Mesh, format: request.format }, &[&request.input], request.force)?;
+        outputs::check(Planned { path, kind: Kind::Mesh, format: request.format }, &inputs, request.force)?;
     }
     Ok(())
 }

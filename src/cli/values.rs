@@ -2,9 +2,6 @@
 
 use std::time::Duration;
 
-/// Numbers of cameras that the octahedral pattern has.
-const CAMERA_COUNTS: [usize; 6] = [6, 18, 66, 258, 1026, 4098];
-
 /// One level of detail as `--lods` names it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LevelSize {
@@ -46,12 +43,6 @@ pub fn threads(text: &str) -> Result<usize, String> {
         Ok(count) if (1..=MOST).contains(&count) => Ok(count),
         _ => Err(format!("threads are a number from 1 to {MOST}")),
     }
-}
-
-/// A number of octahedral cameras.
-pub fn cameras(text: &str) -> Result<usize, String> {
-    let number = text.parse().ok().filter(|n| CAMERA_COUNTS.contains(n));
-    number.ok_or_else(|| "the pattern has 6, 18, 66, 258, 1026 or 4098 cameras".to_owned())
 }
 
 /// A number of triangles, at least 1.
@@ -126,6 +117,21 @@ pub fn direction(text: &str) -> Result<[f64; 3], String> {
     if usable { Ok(xyz) } else { Err(form.to_owned()) }
 }
 
+/// A side: `+y`, `-z`, or a direction `x,y,z`.
+pub fn side(text: &str) -> Result<[f64; 3], String> {
+    let sign = match text.as_bytes().first() {
+        Some(b'+') => 1.0,
+        Some(b'-') => -1.0,
+        _ => 0.0,
+    };
+    match (sign, text.get(1..)) {
+        (1.0 | -1.0, Some("x")) => Ok([sign, 0.0, 0.0]),
+        (1.0 | -1.0, Some("y")) => Ok([0.0, sign, 0.0]),
+        (1.0 | -1.0, Some("z")) => Ok([0.0, 0.0, sign]),
+        _ => direction(text).map_err(|_| "write a side as +y or -z, or as a direction x,y,z".to_owned()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -185,6 +191,16 @@ mod tests {
         assert_eq!(direction("1, 0,-2"), Ok([1.0, 0.0, -2.0]));
         for wrong in ["", "1,2", "0,0,0", "1,2,3,4", "nan,0,1", "1,,2"] {
             assert!(direction(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn sides_are_axes_with_a_sign_or_directions() {
+        assert_eq!(side("+y"), Ok([0.0, 1.0, 0.0]));
+        assert_eq!(side("-z"), Ok([0.0, 0.0, -1.0]));
+        assert_eq!(side("-1,0,2"), Ok([-1.0, 0.0, 2.0]));
+        for wrong in ["", "y", "+", "+w", "0,0,0", "+é"] {
+            assert!(side(wrong).is_err(), "{wrong}");
         }
     }
 }

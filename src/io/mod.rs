@@ -9,6 +9,7 @@
 //! which says so.
 
 mod atomic;
+mod cameras;
 mod encode;
 mod fault;
 mod format;
@@ -25,6 +26,7 @@ mod text;
 use std::path::Path;
 
 pub use atomic::{check_target, write_atomic};
+pub use cameras::read_cameras;
 pub use encode::{TriangleAttributes, WriteOptions, write};
 pub use format::Format;
 pub use table::{write_npy_f32, write_npy_f64, write_visibility_csv};

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::error::Result;
 use crate::io::{self, Loaded, ReadOptions, TriangleAttributes, WriteOptions};
+use crate::mesh::TriMesh;
 use crate::pipeline::{Clock, Observer};
 use crate::report::colour::ColourMap;
 use crate::visibility::{MeasureOptions, StandardError, Subject, Visibility};
@@ -17,6 +18,8 @@ pub struct MeasureRequest {
     pub read: ReadOptions,
     /// How it is looked at.
     pub measure: MeasureOptions,
+    /// Meshes in the same coordinates that hide and are not measured.
+    pub occluders: Vec<PathBuf>,
     /// A mesh file (PLY carries visibility and heat colours), `.npy` or `.csv` to write.
     pub output: Option<PathBuf>,
     /// Heat colours in a PLY output.
@@ -48,6 +51,8 @@ pub struct MeasureReport {
     pub rays: u64,
     /// How exact the numbers are, where the estimator can say it.
     pub standard_error: Option<ErrorSummary>,
+    /// Triangles of occluders.
+    pub occluder_triangles: usize,
 }
 
 /// How exact a measurement is.
@@ -100,10 +105,11 @@ pub struct MeasureSeconds {
 pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result<MeasureReport> {
     let mut clock = Clock::start();
     request.measure.check()?;
+    let occluders = read_occluders(&request.occluders, &request.read)?;
     let loaded = io::read(&request.input, &request.read)?;
     observer.mesh_read(&request.input, &loaded)?;
     let read = clock.lap();
-    let subject = Subject::new(&loaded.mesh, request.measure.backend)?;
+    let subject = Subject::among(&loaded.mesh, &occluders, request.measure.backend)?;
     let build = clock.lap();
     let visibility = subject.measure(&request.measure, observer)?;
     let looked = clock.lap();
@@ -117,6 +123,7 @@ pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result
         backend: request.measure.backend.name(),
         estimator: request.measure.estimator.name(),
         sides: request.measure.sides.name(),
+        occluder_triangles: occluders.iter().map(TriMesh::triangle_count).sum(),
         visibility: VisibilitySummary {
             mesh: visibility.of_mesh(),
             mesh_sides: visibility.of_mesh_sides(),
@@ -126,6 +133,13 @@ pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result
         rays: visibility.details().rays,
         standard_error: visibility.details().standard_error.as_ref().map(ErrorSummary::from),
     })
+}
+
+/// Reads what stands around a mesh.
+pub(super) fn read_occluders(paths: &[PathBuf], options: &ReadOptions) -> Result<Vec<TriMesh>> {
+    // The format is told for the mesh alone.
+    let options = ReadOptions { format: None, ..options.clone() };
+    paths.iter().map(|path| Ok(io::read(path, &options)?.mesh)).collect()
 }
 
 fn write(path: &Path, loaded: &Loaded, visibility: &Visibility, request: &MeasureRequest) -> Result<()> {

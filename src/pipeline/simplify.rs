@@ -50,6 +50,8 @@ pub struct SimplifyRequest {
     pub metric: Metric,
     /// How visibility is measured, where it is needed.
     pub measure: MeasureOptions,
+    /// Meshes in the same coordinates that hide and are no part of the result; with [`Metric::Visibility`] only.
+    pub occluders: Vec<PathBuf>,
     /// What happens to hidden triangles; counts with [`Metric::Visibility`] only.
     pub hidden: Hidden,
     /// p in V^p, 0 to 16.
@@ -68,6 +70,11 @@ impl SimplifyRequest {
     /// Checks what can be checked before the mesh is read.
     pub(super) fn check(&self) -> Result<()> {
         self.measure.check()?;
+        if self.metric == Metric::Quadric && !self.occluders.is_empty() {
+            let message =
+                "--metric quadric does not look, so nothing can be hidden; use --metric visibility".to_owned();
+            return Err(Error::Option { name: "--occluder", message });
+        }
         if self.metric == Metric::Visibility
             && self.hidden == Hidden::Delete
             && self.simplify.topology == Topology::Preserve

@@ -8,4 +8,5 @@ pub mod colour;
 pub mod contact_sheet;
 pub mod legend;
 pub mod picture;
+pub mod plot;
 pub mod table;

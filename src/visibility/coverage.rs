@@ -1,5 +1,6 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::backend::{ItemBuffers, Workload, draw_all};
@@ -23,7 +24,8 @@ pub(super) fn estimate(subject: &Subject<'_>, shapes: &Shapes, looking: &Looking
         progress: looking.progress,
     };
     let counts = CoverageCounts::of(subject.machine(), triangles, looking.cameras, load, looking.diagram)?;
-    if counts.covered() == 0 {
+    // Among occluders, to be hidden altogether is a result.
+    if counts.covered() == 0 && subject.occluders().is_empty() {
         return Err(subject.nothing_to_see());
     }
     let (front, back) = counts.visibilities(shapes, looking.cameras);
@@ -46,6 +48,8 @@ pub struct CoverageCounts {
 impl CoverageCounts {
     /// Draws every camera's view and counts; writes down in `diagram` who sees what.
     ///
+    /// Hits of triangles from number `triangles` on are occluders: they hide, and are counted nowhere.
+    ///
     /// # Errors
     /// As [`draw_all`].
     pub fn of<B: ItemBuffers>(
@@ -55,25 +59,16 @@ impl CoverageCounts {
         load: Workload<'_>,
         diagram: Option<&DiagramRecorder>,
     ) -> Result<Self> {
-        let counts: Vec<AtomicU64> = (0..2 * triangles).map(|_| AtomicU64::new(0)).collect();
-        let covered = AtomicU64::new(0);
+        let tally = Tally::new(triangles, cameras, diagram);
         let views: Vec<View> = cameras.axes().iter().map(|axis| View::along(axis, load.window)).collect();
         draw_all(backend, &views, load, |number, buffers| {
             let axis = cameras.axes()[number];
-            let weight = axis.weight;
-            let count = |hit: Hit, pixels: u64, camera: u32| {
-                counts[slot(hit.triangle.0 as usize, hit.side)].fetch_add(pixels * weight, Ordering::Relaxed);
-                if let Some(diagram) = diagram {
-                    diagram.record(hit.triangle, camera as usize);
-                }
-            };
-            for_each_run(buffers.near(), |hit, pixels| count(hit, pixels, axis.near));
-            for_each_run(buffers.far(), |hit, pixels| count(hit, pixels, axis.far));
-            covered.fetch_add(2 * weight * buffers.covered(), Ordering::Relaxed);
+            axis.near.into_iter().for_each(|camera| tally.add(camera, buffers.near(), buffers.covered()));
+            axis.far.into_iter().for_each(|camera| tally.add(camera, buffers.far(), buffers.covered()));
             Ok(())
         })?;
-        let counts = counts.into_iter().map(AtomicU64::into_inner).collect();
-        Ok(Self { counts, covered: covered.into_inner(), window: load.window })
+        let counts = tally.counts.into_iter().map(AtomicU64::into_inner).collect();
+        Ok(Self { counts, covered: tally.covered.into_inner(), window: load.window })
     }
 
     /// Weighted pixels in which the cameras saw a side of a triangle.
@@ -82,7 +77,7 @@ impl CoverageCounts {
         self.counts[slot(triangle, side)]
     }
 
-    /// Weighted pixels in which the cameras saw anything.
+    /// Weighted pixels in which the cameras saw the mesh.
     #[must_use]
     pub fn covered(&self) -> u64 {
         self.covered
@@ -103,18 +98,22 @@ impl CoverageCounts {
         let sides = |t: usize| {
             let area = shapes.areas[t];
             let (front, back) = (self.seen(t, Side::Front), self.seen(t, Side::Back));
-            if area == 0.0 || front + back == 0 {
-                return (0.0, 0.0);
-            }
-            let unit = pixel_area / (area * cameras.cosine_sum(shapes.normal(t)));
-            (front as f64 * unit, back as f64 * unit)
+            // Sums of cosines are dear, and most triangles show one side.
+            let share = |count: u64, n: DVec3| match count {
+                0 => 0.0,
+                _ => pixel_area * count as f64 / (area * cameras.cosine_sum(n)),
+            };
+            (share(front, shapes.normal(t)), share(back, -shapes.normal(t)))
         };
         (0..shapes.areas.len()).into_par_iter().map(sides).unzip()
     }
 
-    /// The book-keeping identity: Σ A_t (V⁺ + V⁻) D(n_t) is the area that the cameras saw covered, to 1e-9.
+    /// The book-keeping identity: Σ A_t (V⁺ D(n_t) + V⁻ D(−n_t)) is the area that the cameras saw covered, to 1e-9.
     pub(super) fn identity_holds(&self, front: &[f64], back: &[f64], shapes: &Shapes, cameras: &CameraSphere) -> bool {
-        let term = |t: usize| shapes.areas[t] * (front[t] + back[t]) * cameras.cosine_sum(shapes.normal(t));
+        let term = |t: usize| {
+            let [before, behind] = [shapes.normal(t), -shapes.normal(t)].map(|n| cameras.cosine_sum(n));
+            shapes.areas[t] * (front[t] * before + back[t] * behind)
+        };
         let from_triangles: f64 = (0..front.len()).map(term).sum();
         let from_pixels = self.window.pixel_size().powi(2) * self.covered as f64;
         (from_triangles - from_pixels).abs() <= 1e-9 * from_pixels
@@ -122,10 +121,43 @@ impl CoverageCounts {
 
     /// The smallest area whose mean count, were it fully visible, reaches 16; smaller triangles are pooled.
     ///
-    /// A triangle of area A seen by everyone collects about N A / (4 s²) pixels.
+    /// A triangle of area A collects about N A / (4 s²) pixels if all N cameras of the pattern see it.
     pub(super) fn smallest_area(&self, cameras: &CameraSphere) -> f64 {
         const MIN_COUNT: f64 = 16.0;
-        4.0 * MIN_COUNT * self.window.pixel_size().powi(2) / cameras.count() as f64
+        4.0 * MIN_COUNT * self.window.pixel_size().powi(2) / (cameras.count() + cameras.left_out()) as f64
+    }
+}
+
+/// Counts that many threads add to.
+struct Tally<'a> {
+    counts: Vec<AtomicU64>,
+    covered: AtomicU64,
+    cameras: &'a CameraSphere,
+    diagram: Option<&'a DiagramRecorder>,
+}
+
+impl<'a> Tally<'a> {
+    fn new(triangles: usize, cameras: &'a CameraSphere, diagram: Option<&'a DiagramRecorder>) -> Self {
+        let counts = (0..2 * triangles).map(|_| AtomicU64::new(0)).collect();
+        Self { counts, covered: AtomicU64::new(0), cameras, diagram }
+    }
+
+    /// Adds the pixels of a camera's image, of which `covered` are not empty.
+    fn add(&self, camera: u32, image: impl Iterator<Item = Option<Hit>>, covered: u64) {
+        let weight = self.cameras.weight(camera);
+        let mut of_occluders = 0;
+        for_each_run(image, |hit, pixels| {
+            // Occluders have the numbers behind the mesh's own.
+            let Some(count) = self.counts.get(slot(hit.triangle.0 as usize, hit.side)) else {
+                of_occluders += pixels;
+                return;
+            };
+            count.fetch_add(pixels * weight, Ordering::Relaxed);
+            if let Some(diagram) = self.diagram {
+                diagram.record(hit.triangle, camera as usize);
+            }
+        });
+        self.covered.fetch_add(weight * (covered - of_occluders), Ordering::Relaxed);
     }
 }
 
@@ -134,7 +166,7 @@ fn slot(triangle: usize, side: Side) -> usize {
 }
 
 /// Hands over each hit with its number of pixels; neighbouring pixels of one triangle come together.
-fn for_each_run(pixels: impl Iterator<Item = Option<Hit>>, mut take: impl FnMut(Hit, u64)) {
+pub(super) fn for_each_run(pixels: impl Iterator<Item = Option<Hit>>, mut take: impl FnMut(Hit, u64)) {
     let (mut current, mut run) = (None, 0);
     for hit in pixels {
         if hit != current {

@@ -27,7 +27,7 @@ pub(super) fn estimate(subject: &Subject<'_>, shapes: &Shapes, looking: &Looking
         return Err(Error::Option { name: "--estimator", message: message.to_owned() });
     }
     let options = &looking.options.rays;
-    let caster = Caster::new(subject, shapes)?;
+    let caster = Caster::new(subject, shapes, looking.cameras)?;
     let hemisphere = Hemisphere { caster: &caster, shapes, looking };
     let mut tallies = vec![Tally::default(); caster.order().len()];
     let mut samples = 0;

@@ -1,9 +1,9 @@
 //! Which triangles can go without anyone seeing it.
 
-use glam::{DMat3, DQuat, DVec4};
+use glam::DVec3;
 
 use crate::backend::Workload;
-use crate::camera::{CameraSphere, CameraWeights, Window};
+use crate::camera::{CameraSphere, CameraWeights, Window, random_rotation};
 use crate::error::Result;
 use crate::progress::Progress;
 use crate::raster::Side;
@@ -37,7 +37,7 @@ fn hidden_triangles(
         if !hidden.iter().any(|&h| h) {
             return Ok(hidden);
         }
-        let cameras = cameras_of(look)?;
+        let cameras = cameras_of(look, options.cameras.hemisphere)?;
         let load = Workload { window, memory_limit: options.memory_limit, phase: "visibility", progress };
         let counts = CoverageCounts::of(subject.machine(), hidden.len(), &cameras, load, None)?;
         if take_back(&counts, &mut hidden) <= TOLERATED_SHARE {
@@ -58,6 +58,9 @@ impl Hidden {
     /// of unseen neighbours instead keeps half of what could go, and is no safer on thin slits, where neighbours are
     /// seen from the same few directions.)
     ///
+    /// The looks come from all around, whatever pattern or list of cameras measured: what few cameras missed is no reason to
+    /// open a hole toward the others. Only a hemisphere restricts them too, so that what is never seen from below may go.
+    ///
     /// # Errors
     /// As [`super::measure`].
     pub fn marks(
@@ -74,27 +77,13 @@ impl Hidden {
     }
 }
 
-/// Cameras turned at random, differently for each look.
-fn cameras_of(look: u64) -> Result<CameraSphere> {
+/// Cameras turned at random, differently for each look; only those of the hemisphere, if there is one.
+fn cameras_of(look: u64, hemisphere: Option<DVec3>) -> Result<CameraSphere> {
     let count = if look == 0 { FIRST_CAMERAS } else { FURTHER_CAMERAS };
-    Ok(CameraSphere::octahedral(count, CameraWeights::Equal)?.rotated(DMat3::from_quat(rotation_of(look))))
-}
-
-/// A uniformly random rotation: a direction in four dimensions, drawn without sine or cosine, the same everywhere.
-fn rotation_of(look: u64) -> DQuat {
-    let mut state = look;
-    let mut coordinate = || {
-        // SplitMix64; Steele, Lea & Flood 2014.
-        state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (state ^ (state >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / f64::from(1_u32 << 31) / f64::from(1_u32 << 21) - 1.0
-    };
-    loop {
-        let point = DVec4::new(coordinate(), coordinate(), coordinate(), coordinate());
-        if (0.01..=1.0).contains(&point.length_squared()) {
-            return DQuat::from_vec4(point.normalize());
-        }
+    let turned = CameraSphere::octahedral(count, CameraWeights::Equal)?.rotated(random_rotation(look));
+    match hemisphere {
+        Some(toward) => turned.within(toward),
+        None => Ok(turned),
     }
 }
 
@@ -107,18 +96,4 @@ fn take_back(counts: &CoverageCounts, hidden: &mut [bool]) -> f64 {
         *mark = pixels == 0;
     }
     showing as f64 / counts.covered().max(1) as f64
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn looks_are_turned_differently() {
-        let rotations: Vec<DQuat> = (0..MAX_LOOKS).map(rotation_of).collect();
-        for (i, a) in rotations.iter().enumerate() {
-            assert!((a.length() - 1.0).abs() < 1e-12);
-            assert!(rotations[..i].iter().all(|b| a.dot(*b).abs() < 0.999), "look {i} repeats another");
-        }
-    }
 }

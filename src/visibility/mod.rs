@@ -4,6 +4,7 @@
 //! `coverage` replaces their F(t, v), seen or not, by the share of the triangle's image that is seen; the cosines of
 //! eq. (4.3) then cancel, and counting pixels is enough.
 
+mod convergence;
 mod coverage;
 mod diagram;
 mod estimate;
@@ -18,6 +19,7 @@ mod shapes;
 mod subject;
 mod surface;
 
+pub use convergence::{NestedVisibility, mean_difference, nested_visibility};
 pub use coverage::CoverageCounts;
 pub use diagram::{DiagramRecorder, VisibilityDiagram};
 pub use importance::{Hidden, importance};

@@ -1,5 +1,5 @@
 use crate::backend::BackendKind;
-use crate::camera::CameraWeights;
+use crate::camera::{CameraWeights, Cameras};
 use crate::error::{Error, Result};
 use crate::visibility::RayOptions;
 
@@ -88,8 +88,8 @@ impl Sides {
 /// How visibility is measured. `Default` is the preset `best`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasureOptions {
-    /// Number of octahedral cameras: 6, 18, 66, 258, 1026 or 4098.
-    pub cameras: usize,
+    /// Which cameras look.
+    pub cameras: Cameras,
     /// How much each camera counts.
     pub camera_weights: CameraWeights,
     /// Pixels along an image's side, 16 to 16384; `None` chooses by the number of triangles.
@@ -109,7 +109,7 @@ pub struct MeasureOptions {
 impl Default for MeasureOptions {
     fn default() -> Self {
         Self {
-            cameras: 258,
+            cameras: Cameras::default(),
             camera_weights: CameraWeights::Area,
             resolution: None,
             backend: BackendKind::Raster,
@@ -156,6 +156,7 @@ impl MeasureOptions {
                 message: format!("{resolution} pixels; an image has 16 to 16384 along a side"),
             });
         }
+        self.cameras.check()?;
         self.backend.check()?;
         self.estimator.check(self.backend)?;
         self.rays.check()

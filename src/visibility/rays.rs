@@ -2,10 +2,11 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use crate::backend::{Occlusion, Ray};
+use crate::camera::CameraSphere;
 use crate::error::Result;
 use crate::geom::morton_code;
 use crate::mesh::TriangleId;
@@ -18,8 +19,13 @@ pub(super) struct Caster<'a> {
     occlusion: &'a dyn Occlusion,
     /// The triangles that have an area, along a Morton curve, so that the rays of a batch run through the same space.
     order: Vec<u32>,
+    /// Where the cameras are restricted to a hemisphere, nothing is seen from the other one.
+    hemisphere: Option<Vec3>,
     rays: AtomicU64,
 }
+
+/// Rounding of the cosine between a direction and the plane that bounds a hemisphere.
+const HORIZON: f32 = 1e-6;
 
 /// The rays that a worker casts together; kept from batch to batch.
 #[derive(Default)]
@@ -31,14 +37,15 @@ pub(super) struct Batch {
 impl<'a> Caster<'a> {
     /// # Errors
     /// [`crate::Error::Option`] for a backend that only draws.
-    pub fn new(subject: &'a Subject<'a>, shapes: &Shapes) -> Result<Self> {
+    pub fn new(subject: &'a Subject<'a>, shapes: &Shapes, cameras: &CameraSphere) -> Result<Self> {
         let occlusion = subject.machine().occlusion()?;
         let solid = (0..shapes.areas.len() as u32).into_par_iter().filter(|&t| shapes.areas[t as usize] > 0.0);
         let place = |t: u32| morton_code(corners(subject, t).iter().sum::<DVec3>() / 3.0);
         let mut keys: Vec<(u64, u32)> = solid.map(|t| (place(t), t)).collect();
         keys.par_sort_unstable();
         let order = keys.into_iter().map(|(_, t)| t).collect();
-        Ok(Self { subject, occlusion, order, rays: AtomicU64::new(0) })
+        let hemisphere = cameras.hemisphere().map(|toward| toward.as_vec3());
+        Ok(Self { subject, occlusion, order, hemisphere, rays: AtomicU64::new(0) })
     }
 
     /// Triangles in the order in which rays are cast.
@@ -62,7 +69,7 @@ impl<'a> Caster<'a> {
         shape.map_or(DVec3::ZERO, |(_, normal)| normal)
     }
 
-    /// Says which rays of the batch are blocked.
+    /// Says which rays of the batch are blocked, or lead out of the hemisphere of the cameras.
     ///
     /// # Errors
     /// What the backend says.
@@ -70,6 +77,11 @@ impl<'a> Caster<'a> {
         batch.blocked.clear();
         batch.blocked.resize(batch.rays.len(), false);
         self.occlusion.blocked(&batch.rays, &mut batch.blocked)?;
+        if let Some(toward) = self.hemisphere {
+            for (ray, blocked) in batch.rays.iter().zip(&mut batch.blocked) {
+                *blocked |= toward.dot(Vec3::from_array(ray.direction)) < -HORIZON;
+            }
+        }
         self.rays.fetch_add(batch.rays.len() as u64, Ordering::Relaxed);
         Ok(&batch.blocked)
     }

@@ -10,6 +10,7 @@ use crate::visibility::{DiagramRecorder, MeasureOptions, Visibility};
 #[derive(Debug)]
 pub struct Subject<'a> {
     mesh: &'a TriMesh,
+    occluders: &'a [TriMesh],
     frame: Frame,
     machine: Machine,
 }
@@ -20,14 +21,31 @@ impl<'a> Subject<'a> {
     /// # Errors
     /// [`Error::Unavailable`] for a backend that is not there.
     pub fn new(mesh: &'a TriMesh, backend: BackendKind) -> Result<Self> {
+        Self::among(mesh, &[], backend)
+    }
+
+    /// Lays out `mesh` in its own [`Frame`] among occluders in the same coordinates: a floor, an enclosure.
+    ///
+    /// They hide and are not measured. Surface that lies on an occluder is hidden by it.
+    ///
+    /// # Errors
+    /// As [`Subject::new`]; [`Error::Limit`] if there are more triangles than can be numbered.
+    pub fn among(mesh: &'a TriMesh, occluders: &'a [TriMesh], backend: BackendKind) -> Result<Self> {
         let frame = Frame::of(mesh);
-        Ok(Self { mesh, frame, machine: Machine::new(backend, frame.unit_copy(mesh))? })
+        let unit = if occluders.is_empty() { frame.unit_copy(mesh) } else { frame.unit_copy_among(mesh, occluders)? };
+        Ok(Self { mesh, occluders, frame, machine: Machine::new(backend, unit)? })
     }
 
     /// The mesh.
     #[must_use]
     pub fn mesh(&self) -> &'a TriMesh {
         self.mesh
+    }
+
+    /// What stands around it. Their triangles have the numbers behind those of the mesh, one occluder after the other.
+    #[must_use]
+    pub fn occluders(&self) -> &'a [TriMesh] {
+        self.occluders
     }
 
     /// Its frame.
@@ -48,7 +66,7 @@ impl<'a> Subject<'a> {
     /// As [`super::measure`].
     pub fn measure(&self, options: &MeasureOptions, progress: &dyn Progress) -> Result<Visibility> {
         options.check()?;
-        let cameras = CameraSphere::octahedral(options.cameras, options.camera_weights)?;
+        let cameras = options.cameras.sphere(options.camera_weights)?;
         self.measure_from(&cameras, options, None, progress)
     }
 

@@ -23,12 +23,19 @@ const BATCH_RAYS: usize = 256;
 /// # Errors
 /// [`crate::Error::Option`] for a backend that casts no rays, what the backend says, [`crate::Error::Cancelled`].
 pub(super) fn estimate(subject: &Subject<'_>, shapes: &Shapes, looking: &Looking<'_>) -> Result<Estimate> {
-    let caster = Caster::new(subject, shapes)?;
+    let caster = Caster::new(subject, shapes, looking.cameras)?;
     let surface = Surface { caster: &caster, looking, cameras: all(looking.cameras) };
     let points = looking.options.rays.points as usize;
     let mut sums = vec![[Sum::default(); 2]; caster.order().len()];
     let block = (BATCH_RAYS / points).max(1);
     caster.fill(&mut sums, block, looking.progress, |batch, triangles, sums| surface.look(batch, triangles, sums))?;
+    if looking.cameras.hemisphere().is_some() {
+        // Cameras that the hemisphere leaves out are in front of a triangle too, and see nothing.
+        for (&t, [front, back]) in caster.order().iter().zip(&mut sums) {
+            let normal = caster.normal(t);
+            (front.all, back.all) = (looking.cameras.cosine_sum(normal), looking.cameras.cosine_sum(-normal));
+        }
+    }
     let [front, back] = [0, 1].map(|side| caster.in_index_order(&sums, |sums| sums[side].visibility()));
     let details = Details { rays: caster.rays(), ..Details::default() };
     Ok(Estimate { front, back, pooled_below: 0.0, resolution: 0, details })
@@ -59,14 +66,8 @@ struct Camera {
 }
 
 fn all(cameras: &CameraSphere) -> Vec<Camera> {
-    let pair = |axis: &crate::camera::Axis| {
-        [axis.near, axis.far].map(|number| Camera {
-            number: number as usize,
-            direction: cameras.directions()[number as usize],
-            weight: axis.weight as f64,
-        })
-    };
-    cameras.axes().iter().flat_map(pair).collect()
+    let camera = |(number, &direction)| Camera { number, direction, weight: cameras.weight(number as u32) as f64 };
+    cameras.directions().iter().enumerate().map(camera).collect()
 }
 
 struct Surface<'a> {

@@ -5,7 +5,7 @@ use std::ops::Range;
 use approx::assert_abs_diff_eq;
 use glam::DMat3;
 use outsight::backend::BackendKind;
-use outsight::camera::{CameraSphere, CameraWeights};
+use outsight::camera::{CameraSphere, CameraWeights, Cameras};
 use outsight::geom::triangle_area;
 use outsight::mesh::shapes::Tagged;
 use outsight::mesh::{TriMesh, TriangleId};
@@ -139,7 +139,7 @@ impl Pair {
 
     /// The same without turning the cameras.
     pub fn measure(&self, mesh: &TriMesh, cameras: usize, camera_weights: CameraWeights) -> Visibility {
-        let options = MeasureOptions { cameras, camera_weights, ..self.options.clone() };
+        let options = MeasureOptions { cameras: Cameras::octahedral(cameras), camera_weights, ..self.options.clone() };
         outsight::visibility::measure(mesh, &options, &Silent).unwrap()
     }
 

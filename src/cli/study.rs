@@ -1,0 +1,122 @@
+//! `outsight study`: tables and figures about the method itself.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Subcommand};
+use outsight::error::{Error, Result};
+use outsight::io;
+use outsight::pipeline::{ConvergenceReport, ConvergenceRequest, MeshConvergence, study_convergence};
+use serde::Serialize;
+
+use super::console::Console;
+use super::estimate::Task;
+use super::failure::Failure;
+use super::flags::ReadingFlags;
+use super::help;
+use super::outputs;
+use super::system::peak_mib;
+use super::text::{count, duration, table};
+use super::watch::Watch;
+
+#[derive(Debug, Args)]
+pub struct Flags {
+    #[command(subcommand)]
+    study: Study,
+}
+
+#[derive(Debug, Subcommand)]
+enum Study {
+    /// How exact visibility is, by the number of cameras and how they count
+    #[command(after_help = help::STUDY_CONVERGENCE)]
+    Convergence(ConvergenceFlags),
+}
+
+#[derive(Debug, Args)]
+struct ConvergenceFlags {
+    /// Mesh files
+    #[arg(value_name = "MESH", required = true)]
+    meshes: Vec<PathBuf>,
+    #[command(flatten)]
+    reading: ReadingFlags,
+    /// Directory for convergence.json, .csv and .svg; made if it is not there
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// Pixels along each image's side, 16 to 16384 [default: by triangles]
+    #[arg(long, value_name = "W", value_parser = clap::value_parser!(u32).range(16..=16384))]
+    resolution: Option<u32>,
+}
+
+/// The library's report with what only the program knows.
+#[derive(Debug, Serialize)]
+struct Object<'a> {
+    #[serde(flatten)]
+    report: &'a ConvergenceReport,
+    peak_mb: Option<f64>,
+}
+
+/// Runs the study that was asked for.
+pub fn run(flags: &Flags, console: &Console) -> std::result::Result<(), Failure> {
+    match &flags.study {
+        Study::Convergence(flags) => convergence(flags, console),
+    }
+}
+
+fn convergence(flags: &ConvergenceFlags, console: &Console) -> std::result::Result<(), Failure> {
+    let force = console.global.force;
+    let [json, csv, svg] = prepare(&flags.output, ["convergence.json", "convergence.csv", "convergence.svg"], force)?;
+    let request = ConvergenceRequest {
+        inputs: flags.meshes.clone(),
+        read: flags.reading.options(&console.global),
+        resolution: flags.resolution,
+        memory_limit: console.global.memory_limit,
+    };
+    let task = Task::Study { resolution: flags.resolution.unwrap_or(0) };
+    let report = study_convergence(&request, &Watch::new(console, task))?;
+    let object = Object { report: &report, peak_mb: peak_mib() };
+    let text_of_json = console.to_json(&object)?;
+    let picture = report.plot().to_svg().map_err(|e| Error::Write { path: svg.clone(), message: e.to_string() })?;
+    io::write_atomic(&json, force, |out| out.write_all(text_of_json.as_bytes()))?;
+    io::write_atomic(&csv, force, |out| report.write_csv(out))?;
+    io::write_atomic(&svg, force, |out| out.write_all(picture.as_bytes()))?;
+    console.result(&object, &text(&report, &flags.output), true)
+}
+
+/// Makes the directory, and checks that the files can be written before the long work.
+fn prepare<const N: usize>(directory: &Path, names: [&str; N], force: bool) -> Result<[PathBuf; N]> {
+    let fail = |e: std::io::Error| Error::Write { path: directory.to_owned(), message: e.to_string() };
+    std::fs::create_dir_all(directory).map_err(fail)?;
+    let files = names.map(|name| directory.join(name));
+    files.iter().try_for_each(|file| outputs::check_place(file, force))?;
+    Ok(files)
+}
+
+fn text(report: &ConvergenceReport, directory: &Path) -> String {
+    let tables: String = report.meshes.iter().map(table_of).collect();
+    format!(
+        "{tables}mean error of V over the surface, V from 0 to 1\n\
+         same pattern: against 4098 octahedral cameras of the same weights; independent: against {}\n\
+         written  {}\n",
+        report.reference,
+        directory.join("convergence.{json,csv,svg}").display(),
+    )
+}
+
+fn table_of(mesh: &MeshConvergence) -> String {
+    let cell = |error: Option<f64>| error.map_or("-".to_owned(), |e| format!("{e:.5}"));
+    let row = |pair: &[outsight::pipeline::ConvergenceError]| {
+        let mut cells = vec![pair[0].cameras.to_string()];
+        cells.extend(pair.iter().map(|e| cell(e.against_4098)));
+        cells.extend(pair.iter().map(|e| cell(Some(e.against_reference))));
+        cells
+    };
+    let heads = ["cameras", "same pattern, equal", "same pattern, area", "independent, equal", "independent, area"];
+    format!(
+        "{}: {} triangles, {} pixels square, {}\n{}\n",
+        mesh.name(),
+        count(mesh.triangles),
+        mesh.resolution,
+        duration(mesh.seconds),
+        // Errors come in pairs of the same cameras: equal weights, then area weights.
+        table(&heads, &mesh.errors.chunks_exact(2).map(row).collect::<Vec<_>>()),
+    )
+}
