@@ -1,96 +1,131 @@
-//! The inner loop: from projected vertices to pixels.
+//! The inner loop: from the triangles of a cluster to pixels.
+//!
+//! Each step goes over all triangles and leaves a list for the next, so that which of them go on, which nobody can
+//! foresee, costs no mispredicted branch.
 
 use crate::mesh::TriangleId;
-use crate::raster::item_buffer::{Hit, ItemBufferPair, Side, offer, tag};
-use crate::raster::project::{ScreenVertex, round_to_i32};
+use crate::raster::cluster::{CLUSTER_TRIANGLES, CLUSTER_VERTICES, Cluster, Triangle};
+use crate::raster::depth::DepthPlane;
+use crate::raster::edges::{Block, Edges, pixels_of};
+use crate::raster::item_buffer::{Hit, ItemBufferPair, Side, offer, raise, tag};
+use crate::raster::project::{Projection, ScreenVertex};
 
-/// A triangle to draw, its corners ordered by position.
-///
-/// The order makes the depth of coincident triangles bitwise equal whatever order, winding or vertex numbers they are
-/// stored with, so that the tie goes to the smaller triangle number.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Triangle {
-    corners: [u32; 3],
-    /// Twice the triangle's number, plus 1 if ordering the corners reversed the winding.
-    code: u32,
+/// Room to draw a cluster in, small enough for the fastest cache; kept by the caller from view to view.
+#[derive(Debug)]
+pub struct Screen {
+    vertices: [ScreenVertex; CLUSTER_VERTICES],
+    /// First column and row of pixel centres not below a vertex, and minus the last ones not above it: the least of
+    /// three gives a triangle's block.
+    bounds: [[i32; 4]; CLUSTER_VERTICES],
+    candidates: [Candidate; CLUSTER_TRIANGLES],
+    covering: [Covering; CLUSTER_TRIANGLES],
 }
 
-impl Triangle {
-    pub fn new(corners: [u32; 3], id: TriangleId, positions: &[[f32; 3]]) -> Self {
-        let mut ordered = corners;
-        let mut reversed = false;
-        for (i, j) in [(0, 1), (1, 2), (0, 1)] {
-            if precedes(ordered[j], ordered[i], positions) {
-                ordered.swap(i, j);
-                reversed = !reversed;
+/// A triangle with pixel centres in its bounding box.
+#[derive(Debug, Clone, Copy, Default)]
+struct Candidate {
+    triangle: u32,
+    block: Block,
+}
+
+/// A small triangle that covers pixels.
+#[derive(Debug, Clone, Copy, Default)]
+struct Covering {
+    triangle: u32,
+    /// Column and row of the first pixel of its block.
+    first: (i32, i32),
+    mask: u64,
+    doubled_area: i64,
+}
+
+impl Default for Screen {
+    fn default() -> Self {
+        Self {
+            vertices: [ScreenVertex::default(); CLUSTER_VERTICES],
+            bounds: [[0; 4]; CLUSTER_VERTICES],
+            candidates: [Candidate::default(); CLUSTER_TRIANGLES],
+            covering: [Covering::default(); CLUSTER_TRIANGLES],
+        }
+    }
+}
+
+impl Screen {
+    /// Offers every pixel centre of every triangle to the buffers.
+    pub(super) fn draw(&mut self, cluster: Cluster<'_>, projection: &Projection, buffers: &mut ItemBufferPair) {
+        let (triangles, bits) = (cluster.triangles, projection.bits);
+        self.project(cluster.positions, projection, buffers.window().width as i32 - 1);
+        let candidates = self.select(triangles);
+        let covering = self.cover(candidates, triangles, bits, buffers);
+        self.fill_small(covering, triangles, bits, buffers);
+    }
+
+    fn project(&mut self, positions: &[[f32; 3]], projection: &Projection, last_pixel: i32) {
+        let bits = projection.bits;
+        let first = |x: i32| ((x + (1 << bits) - 1) >> bits).max(0);
+        let last = |x: i32| (x >> bits).min(last_pixel);
+        for ((vertex, bounds), &position) in self.vertices.iter_mut().zip(&mut self.bounds).zip(positions) {
+            *vertex = projection.apply(position);
+            *bounds = [first(vertex.column), first(vertex.row), -last(vertex.column), -last(vertex.row)];
+        }
+    }
+
+    /// Lists the candidates; returns how many there are. On a fine mesh most triangles fall between the pixel centres.
+    fn select(&mut self, triangles: &[Triangle]) -> usize {
+        let mut count = 0;
+        for (number, triangle) in (0..).zip(triangles) {
+            let [a, b, c] = triangle.corners.map(|v| &self.bounds[v as usize]);
+            let least = |i: usize| a[i].min(b[i]).min(c[i]);
+            let block = Block { columns: (least(0), -least(2)), rows: (least(1), -least(3)) };
+            self.candidates[count] = Candidate { triangle: number, block };
+            count += usize::from(!block.is_empty());
+        }
+        count
+    }
+
+    /// Lists the small triangles that cover pixels, returns how many there are, and draws the large ones.
+    fn cover(&mut self, count: usize, triangles: &[Triangle], bits: u32, buffers: &mut ItemBufferPair) -> usize {
+        let mut covering = 0;
+        for Candidate { triangle: number, block } in &self.candidates[..count] {
+            let triangle = triangles[*number as usize];
+            let corners = triangle.corners.map(|v| &self.vertices[v as usize]);
+            if !block.is_small() {
+                fill_large(triangle, corners, block, bits, buffers);
+                continue;
+            }
+            let edges = Edges::new(corners, block, bits);
+            let (mask, doubled_area) = (edges.cover(block), edges.doubled_area);
+            let first = (block.columns.0, block.rows.0);
+            self.covering[covering] = Covering { triangle: *number, first, mask, doubled_area };
+            covering += usize::from((mask != 0) & (doubled_area != 0));
+        }
+        covering
+    }
+
+    fn fill_small(&self, count: usize, triangles: &[Triangle], bits: u32, buffers: &mut ItemBufferPair) {
+        for covering in &self.covering[..count] {
+            let triangle = triangles[covering.triangle as usize];
+            let corners = triangle.corners.map(|v| &self.vertices[v as usize]);
+            let hit = tag(seen(triangle, covering.doubled_area > 0));
+            let plane = DepthPlane::new(corners, covering.doubled_area, bits);
+            for (column, row) in pixels_of(covering.mask) {
+                let (column, row) = (covering.first.0 + column, covering.first.1 + row);
+                raise(&mut buffers.row_mut(row as usize)[column as usize], plane.along_row(row).at(column), hit);
             }
         }
-        Self { corners: ordered, code: id.0 << 1 | u32::from(reversed) }
-    }
-
-    /// What the near camera sees of it, given whether the ordered corners appear counter-clockwise.
-    fn seen(self, counter_clockwise: bool) -> Hit {
-        let reversed = self.code & 1 == 1;
-        let side = if counter_clockwise == reversed { Side::Back } else { Side::Front };
-        Hit { triangle: TriangleId(self.code >> 1), side }
     }
 }
 
-fn precedes(a: u32, b: u32, positions: &[[f32; 3]]) -> bool {
-    let (pa, pb) = (positions[a as usize], positions[b as usize]);
-    let differing = pa.iter().zip(&pb).find(|(x, y)| x != y);
-    differing.is_some_and(|(x, y)| x < y)
-}
-
-/// Offers every pixel centre of every triangle to the buffers.
-pub(super) fn draw(triangles: &[Triangle], vertices: &[ScreenVertex], bits: u32, buffers: &mut ItemBufferPair) {
-    let last_pixel = buffers.window().width as i32 - 1;
-    for &triangle in triangles {
-        let corners = triangle.corners.map(|v| vertices[v as usize]);
-        let columns = pixel_range(corners.map(|c| c.column), bits, last_pixel);
-        let rows = pixel_range(corners.map(|c| c.row), bits, last_pixel);
-        // On a fine mesh most triangles fall between the pixel centres and end here.
-        if columns.0 <= columns.1 && rows.0 <= rows.1 {
-            fill(triangle, corners, Block { columns, rows, bits }, buffers);
-        }
-    }
-}
-
-/// First and last pixel whose centre lies within the span of three coordinates.
-#[inline]
-fn pixel_range([a, b, c]: [i32; 3], bits: u32, last_pixel: i32) -> (i32, i32) {
-    let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-    (((low + (1 << bits) - 1) >> bits).max(0), (high >> bits).min(last_pixel))
-}
-
-/// The pixels around a triangle.
-#[derive(Clone, Copy)]
-struct Block {
-    columns: (i32, i32),
-    rows: (i32, i32),
-    bits: u32,
-}
-
-/// Up to this many columns each pixel is tested; beyond, the span of a row is computed by division.
-const TESTED_COLUMNS: i32 = 4;
-
-fn fill(triangle: Triangle, corners: [ScreenVertex; 3], block: Block, buffers: &mut ItemBufferPair) {
-    let doubled_area = edge_function(corners[0], corners[1], corners[2].column, corners[2].row);
-    if doubled_area == 0 {
+/// Draws a triangle row by row.
+#[inline(never)]
+fn fill_large(triangle: Triangle, corners: [&ScreenVertex; 3], block: &Block, bits: u32, buffers: &mut ItemBufferPair) {
+    let edges = Edges::new(corners, block, bits);
+    if edges.doubled_area == 0 {
         return;
     }
-    let hit = tag(triangle.seen(doubled_area > 0));
-    let [a, b, c] = corners;
-    let (second, third) = if doubled_area > 0 { (b, c) } else { (c, b) };
-    let mut edges = [(a, second), (second, third), (third, a)].map(|(p, q)| Edge::new(p, q, block));
-    let plane = DepthPlane::new(corners, doubled_area, block.bits);
-    let (first, last) = block.columns;
-    for row in block.rows.0..=block.rows.1 {
-        let span = if last - first < TESTED_COLUMNS {
-            tested_span(&edges, last - first)
-        } else {
-            computed_span(&edges, last - first)
-        };
+    let hit = tag(seen(triangle, edges.doubled_area > 0));
+    let plane = DepthPlane::new(corners, edges.doubled_area, bits);
+    let first = block.columns.0;
+    for (row, span) in (block.rows.0..).zip(edges.spans(block)) {
         if let Some((from, to)) = span {
             let depth = plane.along_row(row);
             let pixels = &mut buffers.row_mut(row as usize)[(first + from) as usize..=(first + to) as usize];
@@ -98,122 +133,12 @@ fn fill(triangle: Triangle, corners: [ScreenVertex; 3], block: Block, buffers: &
                 offer(pixel, depth.at(column), hit);
             }
         }
-        edges.iter_mut().for_each(Edge::next_row);
     }
 }
 
-/// Twice the signed area of (a, b, point): positive where the point lies to the left of a → b. Exact.
-#[inline]
-fn edge_function(a: ScreenVertex, b: ScreenVertex, column: i32, row: i32) -> i64 {
-    let wide = |x: i32, y: i32| i64::from(x) - i64::from(y);
-    wide(b.column, a.column) * wide(row, a.row) - wide(b.row, a.row) * wide(column, a.column)
-}
-
-/// An edge of a counter-clockwise triangle; a pixel is inside where `value` is not negative.
-#[derive(Clone, Copy)]
-struct Edge {
-    /// At the first column of the current row; 1 less on edges that do not own their pixels.
-    value: i64,
-    per_column: i64,
-    per_row: i64,
-}
-
-impl Edge {
-    #[inline]
-    fn new(a: ScreenVertex, b: ScreenVertex, block: Block) -> Self {
-        let (dx, dy) = (i64::from(b.column) - i64::from(a.column), i64::from(b.row) - i64::from(a.row));
-        // Top-left rule, rows going up: left edges run downward, top edges run leftward.
-        let owns = dy < 0 || (dy == 0 && dx < 0);
-        let value = edge_function(a, b, block.columns.0 << block.bits, block.rows.0 << block.bits);
-        Self { value: value - i64::from(!owns), per_column: -dy << block.bits, per_row: dx << block.bits }
-    }
-
-    #[inline]
-    fn next_row(&mut self) {
-        self.value += self.per_row;
-    }
-}
-
-/// First and last column inside all edges, counted from the first, by looking at each.
-#[inline]
-fn tested_span(edges: &[Edge; 3], last: i32) -> Option<(i32, i32)> {
-    let inside = |column: i32| edges.iter().all(|e| e.value + i64::from(column) * e.per_column >= 0);
-    let from = (0..=last).find(|&c| inside(c))?;
-    let to = (from..last).take_while(|&c| inside(c + 1)).count() as i32;
-    Some((from, from + to))
-}
-
-/// The same by dividing: a row of a triangle is one interval.
-#[inline]
-fn computed_span(edges: &[Edge; 3], last: i32) -> Option<(i32, i32)> {
-    let (mut from, mut to) = (0, i64::from(last));
-    for edge in edges {
-        match edge.per_column {
-            0 if edge.value < 0 => return None,
-            0 => {}
-            step if step > 0 => from = from.max(div_ceil(-edge.value, step)),
-            step => to = to.min(edge.value.div_euclid(-step)),
-        }
-    }
-    (from <= to).then_some((from as i32, to as i32))
-}
-
-/// Quotient rounded up, for a positive divisor.
-#[inline]
-fn div_ceil(a: i64, b: i64) -> i64 {
-    -(-a).div_euclid(b)
-}
-
-/// Depth over the screen, from corners in canonical order.
-struct DepthPlane {
-    origin: [f64; 3],
-    per_column: f64,
-    per_row: f64,
-    least: f64,
-    most: f64,
-    pixel: f64,
-}
-
-impl DepthPlane {
-    #[inline]
-    fn new([a, b, c]: [ScreenVertex; 3], doubled_area: i64, bits: u32) -> Self {
-        let difference = |x: i32, y: i32| f64::from(x) - f64::from(y);
-        let (bx, by, bz) = (difference(b.column, a.column), difference(b.row, a.row), difference(b.depth, a.depth));
-        let (cx, cy, cz) = (difference(c.column, a.column), difference(c.row, a.row), difference(c.depth, a.depth));
-        let area = doubled_area as f64;
-        Self {
-            origin: [a.column, a.row, a.depth].map(f64::from),
-            per_column: (bz * cy - cz * by) / area,
-            per_row: (cz * bx - bz * cx) / area,
-            least: f64::from(a.depth.min(b.depth).min(c.depth)),
-            most: f64::from(a.depth.max(b.depth).max(c.depth)),
-            pixel: f64::from(1_u32 << bits),
-        }
-    }
-
-    #[inline]
-    fn along_row(&self, row: i32) -> RowDepth {
-        let start = self.origin[2] + self.per_row * (f64::from(row) * self.pixel - self.origin[1])
-            - self.per_column * self.origin[0];
-        RowDepth { start, per_pixel: self.per_column * self.pixel, least: self.least, most: self.most }
-    }
-}
-
-/// Depth along one row of pixels.
-struct RowDepth {
-    start: f64,
-    per_pixel: f64,
-    least: f64,
-    most: f64,
-}
-
-impl RowDepth {
-    /// Depth at the centre of a pixel; kept between the corners, where a triangle seen edge-on would overshoot.
-    #[inline]
-    fn at(&self, column: i32) -> i32 {
-        let depth = self.start + f64::from(column) * self.per_pixel;
-        // Spelled out because `f64::max` also looks after NaN, which cannot be here.
-        let depth = if depth < self.least { self.least } else { depth };
-        round_to_i32(if depth > self.most { self.most } else { depth })
-    }
+/// What the near camera sees of a triangle, given whether its ordered corners appear counter-clockwise.
+fn seen(triangle: Triangle, counter_clockwise: bool) -> Hit {
+    let reversed = triangle.code & 1 == 1;
+    let side = if counter_clockwise == reversed { Side::Back } else { Side::Front };
+    Hit { triangle: TriangleId(triangle.code >> 1), side }
 }

@@ -101,18 +101,30 @@ pub(super) fn tag(hit: Hit) -> u32 {
     !(hit.triangle.0 << 1 | u32::from(hit.side == Side::Back))
 }
 
+/// Offers a pixel of a large triangle.
 #[inline]
 pub(super) fn offer(keys: &mut [u64; 2], depth: i32, tag: u32) {
-    let closeness = depth as u32 ^ 0x8000_0000;
-    let near = u64::from(closeness) << 32 | u64::from(tag);
-    let far = u64::from(!closeness) << 32 | u64::from(tag);
-    // Branches, not maxima: most surface lies between two others, so that both are foreseen and nothing is written.
+    let [near, far] = keys_of(depth, tag);
+    // Branches, not maxima: most large surfaces lie between two others, so that both are foreseen, nothing is written.
     if near > keys[0] {
         keys[0] = near;
     }
     if far > keys[1] {
         keys[1] = far;
     }
+}
+
+/// The same for small triangles, whose fate differs from one to the next: without branches.
+#[inline]
+pub(super) fn raise(keys: &mut [u64; 2], depth: i32, tag: u32) {
+    let [near, far] = keys_of(depth, tag);
+    *keys = [keys[0].max(near), keys[1].max(far)];
+}
+
+#[inline]
+fn keys_of(depth: i32, tag: u32) -> [u64; 2] {
+    let closeness = depth as u32 ^ 0x8000_0000;
+    [closeness, !closeness].map(|c| u64::from(c) << 32 | u64::from(tag))
 }
 
 #[inline]

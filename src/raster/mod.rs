@@ -7,12 +7,16 @@
 //! pixels): edge functions are integers, a pixel centre on an edge belongs to one of the two triangles (top-left rule),
 //! and triangles at equal depth are ordered by number.
 
+mod cluster;
+mod depth;
 mod draw;
+mod edges;
 mod item_buffer;
 mod project;
 mod scene;
 mod shade;
 
+pub use draw::Screen;
 pub use item_buffer::{Hit, ItemBufferPair, Side};
-pub use scene::{Scene, Screen};
+pub use scene::Scene;
 pub use shade::{GreyImage, shade};

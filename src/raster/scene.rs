@@ -1,14 +1,14 @@
 use crate::camera::{UnitMesh, View, Window};
 use crate::error::{Error, Result};
-use crate::raster::draw::{Triangle, draw};
+use crate::raster::cluster::Clusters;
+use crate::raster::draw::Screen;
 use crate::raster::item_buffer::ItemBufferPair;
-use crate::raster::project::{Projection, ScreenVertex};
+use crate::raster::project::Projection;
 
 /// A mesh laid out for drawing from many sides.
 #[derive(Debug)]
 pub struct Scene {
-    positions: Vec<[f32; 3]>,
-    triangles: Vec<Triangle>,
+    clusters: Clusters,
     extent: f64,
 }
 
@@ -16,19 +16,18 @@ impl Scene {
     /// Lays out a mesh.
     #[must_use]
     pub fn new(mesh: UnitMesh) -> Self {
-        let triangles = mesh.triangles.iter().map(|&(corners, id)| Triangle::new(corners, id, &mesh.positions));
-        Self { triangles: triangles.collect(), extent: mesh.extent, positions: mesh.positions }
+        Self { clusters: Clusters::new(&mesh.positions, &mesh.triangles), extent: mesh.extent }
     }
 
-    /// Bytes that a worker needs to draw views through this window: a pair of buffers and the projected vertices.
+    /// Bytes that a worker needs to draw views through this window: a pair of buffers, mostly.
     #[must_use]
     pub fn bytes_per_worker(&self, window: Window) -> u64 {
-        ItemBufferPair::bytes(window) + (self.positions.len() * size_of::<ScreenVertex>()) as u64
+        ItemBufferPair::bytes(window) + size_of::<Screen>() as u64
     }
 
     /// Draws both item buffers of a view, over what they held; triangles outside the window are clipped.
     ///
-    /// `screen` is room for the projected vertices, kept by the caller from view to view.
+    /// `screen` is room to work in, kept by the caller from view to view.
     ///
     /// # Errors
     /// [`Error::Limit`] if the mesh is so much larger than the window that its vertices cannot be told apart.
@@ -39,14 +38,10 @@ impl Scene {
                 self.extent / view.window.half_width
             ),
         })?;
-        screen.0.clear();
-        screen.0.extend(self.positions.iter().map(|&p| projection.apply(p)));
         buffers.clear();
-        draw(&self.triangles, &screen.0, projection.bits, buffers);
+        for cluster in self.clusters.iter() {
+            screen.draw(cluster, &projection, buffers);
+        }
         Ok(())
     }
 }
-
-/// The vertices of a scene as a view sees them.
-#[derive(Debug, Default)]
-pub struct Screen(Vec<ScreenVertex>);
