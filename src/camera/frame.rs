@@ -52,9 +52,15 @@ impl Frame {
     /// The mesh as seen in this frame.
     #[must_use]
     pub fn unit_copy(&self, mesh: &TriMesh) -> UnitMesh {
+        self.unit_copy_of(mesh, |id| self.area_and_normal(mesh, id).is_some())
+    }
+
+    /// The mesh as seen in this frame, where the caller knows which triangles can be seen.
+    #[must_use]
+    pub fn unit_copy_of(&self, mesh: &TriMesh, can_be_seen: impl Fn(TriangleId) -> bool) -> UnitMesh {
         let unit = |p: DVec3| self.to_unit(p);
         let triangles = (0..).map(TriangleId).zip(mesh.triangles());
-        let visible = triangles.filter(|&(id, _)| self.area_and_normal(mesh, id).is_some());
+        let visible = triangles.filter(|&(id, _)| can_be_seen(id));
         UnitMesh {
             positions: mesh.positions().iter().map(|&p| unit(p).as_vec3().to_array()).collect(),
             triangles: visible.map(|(id, &t)| (t, id)).collect(),

@@ -10,7 +10,7 @@ use outsight::camera::CameraWeights;
 use outsight::error::{Error, Result};
 use outsight::io::{Format, ReadOptions};
 use outsight::report::colour::ColourMap;
-use outsight::visibility::{Estimator, Sides};
+use outsight::visibility::{DepthRescue, Estimator, Sides};
 
 use super::progress::Show;
 use super::values;
@@ -120,12 +120,15 @@ pub struct LookingFlags {
     /// The machine that looks [default: auto, which is raster]
     #[arg(long, value_name = "NAME")]
     pub backend: Option<BackendName>,
-    /// What is counted [default: coverage]
+    /// What is counted [best: coverage, paper: item-buffer]
     #[arg(long, value_name = "NAME")]
     pub estimator: Option<EstimatorName>,
     /// Visibility of a triangle's front, better side, or both added [best: better, paper: one]
     #[arg(long, value_name = "WHICH")]
     pub sides: Option<SidesName>,
+    /// Triangles without a pixel under --estimator item-buffer [default: plain]
+    #[arg(long, value_name = "RULE")]
+    pub rescue: Option<RescueName>,
 }
 
 /// A set of defaults.
@@ -190,8 +193,7 @@ names! {
     EstimatorName => Estimator {
         // Weighted pixels: unbiased at any triangle size
         Coverage => Estimator::Coverage,
-        // The paper's: a camera sees a triangle or not, not there yet
-        #[value(hide = true)]
+        // The paper's: a camera sees a triangle or not
         ItemBuffer => Estimator::ItemBuffer,
         // Rays from the triangle to the cameras, not there yet
         #[value(hide = true)]
@@ -211,6 +213,18 @@ names! {
         Better => Sides::Better,
         // Both added
         Sum => Sides::Sum,
+    }
+}
+
+names! {
+    /// `--rescue`.
+    RescueName => DepthRescue {
+        // Seen unless the depth buffer is clearly in front; walls of up to three pixels leak
+        Plain => DepthRescue::Plain,
+        // Seen only where the nearest pixel is empty or shows the same surface
+        Strict => DepthRescue::Strict,
+        // Hidden
+        None => DepthRescue::None,
     }
 }
 

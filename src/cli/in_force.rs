@@ -3,7 +3,7 @@
 use outsight::camera::CameraWeights;
 use outsight::pipeline::SimplifyRequest;
 use outsight::simplify::{Boundary, PlaneWeight, Topology};
-use outsight::visibility::MeasureOptions;
+use outsight::visibility::{Estimator, MeasureOptions};
 use serde_json::{Value, json};
 
 /// Options of measuring. A resolution of `null` was chosen by the number of triangles.
@@ -18,6 +18,7 @@ pub fn measure(options: &MeasureOptions) -> Value {
         "backend": options.backend.name(),
         "estimator": options.estimator.name(),
         "sides": options.sides.name(),
+        "rescue": (options.estimator == Estimator::ItemBuffer).then(|| options.rescue.name()),
     })
 }
 

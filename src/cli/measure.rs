@@ -51,7 +51,6 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
         let planned = Planned { path, kind: Kind::Visibility, format: None };
         outputs::check(planned, &[&request.input], request.force)?;
     }
-    presets::announce_stand_ins(&flags.looking, console);
     let task = Task::Measure { resolution: request.measure.resolution.unwrap_or(0) };
     let writes_mesh = request.output.as_deref().is_some_and(|p| !["npy", "csv"].contains(&ending_of(p).as_str()));
     let watch = Watch::new(console, task).writing_mesh(writes_mesh);
@@ -93,6 +92,10 @@ fn text(report: &MeasureReport, request: &MeasureRequest) -> String {
         ),
         ("time", format!("{} ({} looking)", duration(report.seconds.total), duration(report.seconds.visibility))),
     ];
+    if let (Some(rescue), Some(pieces)) = (report.rescue, report.subdivided) {
+        let rescued = format!("{:.1} % of what is seen has no pixel of its own", 100.0 * rescue.rate);
+        rows.insert(4, ("cut into", format!("{} pieces; {rescued}", count(pieces))));
+    }
     if seen.mesh_sides != seen.mesh {
         rows.insert(1, ("with backs", format!("{:.4}  (--sides {})", seen.mesh_sides, report.sides)));
     }

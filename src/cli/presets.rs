@@ -3,10 +3,9 @@
 use outsight::error::{Error, Result};
 use outsight::pipeline::Metric;
 use outsight::simplify::{PlaneWeight, SimplifyOptions, Topology};
-use outsight::visibility::{Hidden, MeasureOptions};
+use outsight::visibility::{Estimator, Hidden, MeasureOptions};
 
 use super::collapsing::{CollapseFlags, MetricName, RefitName};
-use super::console::Console;
 use super::flags::{GlobalFlags, LookingFlags, Preset};
 
 /// p in V^p: both presets square, as the paper does.
@@ -15,7 +14,8 @@ pub const VISIBILITY_POWER: f64 = 2.0;
 /// How visibility is measured under these flags.
 ///
 /// # Errors
-/// [`Error::Unavailable`] for a backend or an estimator that this version does not have.
+/// [`Error::Unavailable`] for a backend or an estimator that this version does not have, [`Error::Option`] for `--rescue`
+/// with an estimator that has no use for it.
 pub fn measure_options(flags: &LookingFlags, global: &GlobalFlags) -> Result<MeasureOptions> {
     let preset = match flags.preset {
         Preset::Best => MeasureOptions::default(),
@@ -28,20 +28,15 @@ pub fn measure_options(flags: &LookingFlags, global: &GlobalFlags) -> Result<Mea
         backend: flags.backend.map_or(preset.backend, Into::into),
         estimator: flags.estimator.map_or(preset.estimator, Into::into),
         sides: flags.sides.map_or(preset.sides, Into::into),
+        rescue: flags.rescue.map_or(preset.rescue, Into::into),
         memory_limit: global.memory_limit,
     };
     options.check()?;
-    Ok(options)
-}
-
-/// Says where the preset `paper` cannot be followed yet, for commands that measure.
-pub fn announce_stand_ins(flags: &LookingFlags, console: &Console) {
-    if flags.preset == Preset::Paper && flags.estimator.is_none() {
-        console.announce(
-            "--preset paper: the estimator item-buffer is not in this version, coverage stands in; --estimator coverage \
-             silences this",
-        );
+    if flags.rescue.is_some() && options.estimator != Estimator::ItemBuffer {
+        let message = format!("--estimator {} rescues nothing; use --estimator item-buffer", options.estimator.name());
+        return Err(Error::Option { name: "--rescue", message });
     }
+    Ok(options)
 }
 
 /// What orders the collapses under these flags.

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::io::{self, Loaded, ReadOptions, TriangleAttributes, WriteOptions};
 use crate::pipeline::{Clock, Observer};
 use crate::report::colour::ColourMap;
-use crate::visibility::{MeasureOptions, Subject, Visibility};
+use crate::visibility::{MeasureOptions, Rescue, Subject, Visibility};
 
 /// What [`measure_file`] does.
 #[derive(Debug, Clone)]
@@ -44,6 +44,29 @@ pub struct MeasureReport {
     pub seconds: MeasureSeconds,
     /// Which side of a triangle made its visibility.
     pub sides: &'static str,
+    /// Pieces that the triangles were cut into, under the estimator `item-buffer`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub subdivided: Option<usize>,
+    /// How often depth stood in for a pixel, under the estimator `item-buffer`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rescue: Option<RescueSummary>,
+}
+
+/// Pairs of a piece and a camera that the piece faces: how many without a pixel were rescued.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct RescueSummary {
+    /// Pairs without a pixel.
+    pub without_pixel: u64,
+    /// Those of them that count as seen.
+    pub rescued: u64,
+    /// The share of the rescued among all that count as seen.
+    pub rate: f64,
+}
+
+impl From<Rescue> for RescueSummary {
+    fn from(rescue: Rescue) -> Self {
+        Self { without_pixel: rescue.without_pixel, rescued: rescue.rescued, rate: rescue.rate() }
+    }
 }
 
 /// Visibility of a whole mesh.
@@ -99,6 +122,8 @@ pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result
             mesh_sides: visibility.of_mesh_sides(),
             never_seen: visibility.never_seen(),
         },
+        subdivided: visibility.details().pieces,
+        rescue: visibility.details().rescue.map(Into::into),
         seconds: MeasureSeconds { read, build, visibility: looked, total: clock.total() },
     })
 }

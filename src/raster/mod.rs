@@ -13,6 +13,6 @@ mod project;
 mod scene;
 mod shade;
 
-pub use item_buffer::{Hit, ItemBufferPair, Side};
+pub use item_buffer::{Hit, ItemBufferPair, Side, depth_step};
 pub use scene::{Scene, Screen};
 pub use shade::{GreyImage, shade};

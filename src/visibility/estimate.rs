@@ -2,7 +2,7 @@ use crate::camera::CameraSphere;
 use crate::error::Result;
 use crate::progress::Progress;
 use crate::visibility::{
-    Details, DiagramRecorder, Estimator, MeasureOptions, Shapes, Subject, Visibility, coverage, pool,
+    Details, DiagramRecorder, Estimator, MeasureOptions, Shapes, Subject, Visibility, coverage, item_buffer, pool,
 };
 
 /// Who looks how, for every estimator alike.
@@ -36,6 +36,7 @@ pub(super) fn estimate(subject: &Subject<'_>, looking: &Looking<'_>) -> Result<V
     }
     let found = match looking.options.estimator {
         Estimator::Coverage => coverage::estimate(subject, &shapes, looking)?,
+        Estimator::ItemBuffer => item_buffer::estimate(subject, &shapes, looking)?,
         other => return Err(other.unavailable()),
     };
     finish(subject, &shapes, found, looking)
