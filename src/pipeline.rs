@@ -16,7 +16,9 @@ mod simplify;
 
 pub use compare::{CompareReport, CompareRequest, GeometricReport, TestReport, compare_files};
 pub use convergence::{ConvergenceError, ConvergenceReport, ConvergenceRequest, MeshConvergence, study_convergence};
-pub use measure::{ErrorSummary, MeasureReport, MeasureRequest, MeasureSeconds, VisibilitySummary, measure_file};
+pub use measure::{
+    ErrorSummary, MeasureReport, MeasureRequest, MeasureSeconds, RescueSummary, VisibilitySummary, measure_file,
+};
 pub use render::{RenderRequest, Style, render_file};
 pub use simplify::{
     LevelReport, LevelRequest, Metric, Simplified, SimplifyReport, SimplifyRequest, SimplifySeconds, simplify_seen,

@@ -111,9 +111,8 @@ fn every_exit_code_has_its_cause() {
 #[test]
 fn what_this_version_lacks_is_named_with_what_to_use_instead() {
     let home = directory();
-    let cases: [(&[&str], &str); 5] = [
+    let cases: [(&[&str], &str); 4] = [
         (&["measure", "cube.off", "--backend", "gpu"], "--backend raster"),
-        (&["measure", "cube.off", "--estimator", "item-buffer"], "--estimator coverage"),
         (&["simplify", "cube.off", "-o", "x.ply", "-t", "4", "--metric", "orientation"], "--metric visibility"),
         (&["simplify", "cube.off", "-o", "x.ply", "-t", "4", "--metric", "silhouette"], "--metric visibility"),
         (&["simplify", "cube.off", "-o", "x.ply", "-t", "4", "--refit", "guarded"], "--refit none"),

@@ -5,7 +5,7 @@ use crate::backend::{ItemBuffers, Occlusion, Ray};
 use crate::camera::{UnitMesh, View, Window};
 use crate::error::{Error, Result};
 use crate::mesh::TriangleId;
-use crate::raster::{Hit, ItemBufferPair, Side};
+use crate::raster::{Hit, ItemBufferPair, Side, depth_step};
 
 /// The judge: every ray against every triangle, in `f64`, with no shortcut.
 ///
@@ -33,12 +33,12 @@ impl ItemBuffers for Brute {
     fn draw(&self, view: &View, (): &mut (), buffers: &mut ItemBufferPair) -> Result<()> {
         buffers.clear();
         let width = view.window.width;
+        let step = depth_step(view.window, self.extent);
         for pixel in 0..width * width {
             let origin = view.pixel_centre(pixel % width, pixel / width);
             for &(corners, triangle) in &self.triangles {
                 if let Some((depth, side)) = crossing(origin, view.toward, corners) {
-                    let depth = (depth / (1.001 * self.extent) * f64::from(1 << 30)).round() as i32;
-                    buffers.offer(pixel as usize, depth, Hit { triangle, side });
+                    buffers.offer(pixel as usize, (depth / step).round() as i32, Hit { triangle, side });
                 }
             }
         }

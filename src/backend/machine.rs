@@ -40,6 +40,17 @@ impl Machine {
         }
     }
 
+    /// Which backend this is.
+    #[must_use]
+    pub fn kind(&self) -> BackendKind {
+        match self {
+            Self::Raster(_) => BackendKind::Raster,
+            #[cfg(feature = "embree")]
+            Self::Embree(_) => BackendKind::Embree,
+            Self::Brute(_) => BackendKind::Brute,
+        }
+    }
+
     /// The same machine as one that casts rays.
     ///
     /// # Errors

@@ -58,9 +58,15 @@ impl Frame {
     /// The mesh as seen in this frame.
     #[must_use]
     pub fn unit_copy(&self, mesh: &TriMesh) -> UnitMesh {
+        self.unit_copy_of(mesh, |id| self.area_and_normal(mesh, id).is_some())
+    }
+
+    /// The mesh as seen in this frame, where the caller knows which triangles can be seen.
+    #[must_use]
+    pub fn unit_copy_of(&self, mesh: &TriMesh, can_be_seen: impl Fn(TriangleId) -> bool) -> UnitMesh {
         let unit = |p: DVec3| self.to_unit(p);
         let triangles = (0..).map(TriangleId).zip(mesh.triangles());
-        let visible = triangles.filter(|&(id, _)| self.area_and_normal(mesh, id).is_some());
+        let visible = triangles.filter(|&(id, _)| can_be_seen(id));
         UnitMesh {
             positions: mesh.positions().iter().map(|&p| unit(p).as_vec3().to_array()).collect(),
             triangles: visible.map(|(id, &t)| (t, id)).collect(),
@@ -68,27 +74,30 @@ impl Frame {
         }
     }
 
-    /// The mesh as seen in this frame, with occluders that stand around it in the same coordinates.
+    /// A mesh as seen in this frame with occluders that stand around it in the same coordinates.
     ///
-    /// Triangle t of the first occluder gets the number T + t, with T triangles in the mesh; the next occluder follows. Each
+    /// `unit` shows a mesh of `triangles` triangles. Triangle t of the first occluder gets the number `triangles` + t; the
+    /// next occluder follows. Each
     /// is three sheets, itself and a shifted copy to either side, a few millionths apart: surface that lies on an
     /// occluder, as a part on a floor, is between them and hidden, whatever rounding says.
     ///
     /// # Errors
     /// [`Error::Limit`] if there are more triangles than can be numbered.
-    pub fn unit_copy_among(&self, mesh: &TriMesh, occluders: &[TriMesh]) -> Result<UnitMesh> {
+    pub fn among(&self, mut unit: UnitMesh, triangles: usize, occluders: &[TriMesh]) -> Result<UnitMesh> {
         let around: usize = occluders.iter().map(TriMesh::triangle_count).sum();
-        let positions = mesh.vertex_count() + 9 * around;
-        if mesh.triangle_count() + around > MAX_TRIANGLES || positions > u32::MAX as usize {
+        if around == 0 {
+            return Ok(unit);
+        }
+        let positions = unit.positions.len() + 9 * around;
+        if triangles + around > MAX_TRIANGLES || positions > u32::MAX as usize {
             let message = format!("occluders of {around} triangles are more than can be numbered; take simpler ones");
             return Err(Error::Limit { message });
         }
-        let mut unit = self.unit_copy(mesh);
         let reach = |o: &TriMesh| corners_of_all(o).map(|p| self.to_unit(p).length()).fold(0.0, f64::max);
         unit.extent = occluders.iter().map(reach).fold(unit.extent, f64::max);
         let shift = CONTACT * unit.extent;
         unit.extent += shift;
-        let mut first = mesh.triangle_count() as u32;
+        let mut first = triangles as u32;
         for occluder in occluders {
             self.append_sheets(occluder, first, shift, &mut unit);
             first += occluder.triangle_count() as u32;

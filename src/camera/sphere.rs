@@ -145,6 +145,12 @@ impl CameraSphere {
         self.weights[camera as usize]
     }
 
+    /// Directions and weights of all cameras of the pattern, those left out included.
+    #[must_use]
+    pub fn pattern(&self) -> &[(DVec3, u64)] {
+        &self.whole.cameras
+    }
+
     /// The lines of sight, ascending by the smaller number of their cameras.
     #[must_use]
     pub fn axes(&self) -> &[Axis] {

@@ -10,7 +10,7 @@ use outsight::camera::CameraWeights;
 use outsight::error::{Error, Result};
 use outsight::io::{Format, ReadOptions};
 use outsight::report::colour::ColourMap;
-use outsight::visibility::{Estimator, PartlySeen, Sides};
+use outsight::visibility::{DepthRescue, Estimator, PartlySeen, Sides};
 
 use super::cameras::CameraFlags;
 use super::progress::Show;
@@ -120,12 +120,15 @@ pub struct LookingFlags {
     /// The machine that looks [default: auto, which is raster]
     #[arg(long, value_name = "NAME")]
     pub backend: Option<BackendName>,
-    /// What is counted [default: coverage]
+    /// What is counted [best: coverage, paper: item-buffer]
     #[arg(long, value_name = "NAME")]
     pub estimator: Option<EstimatorName>,
     /// Visibility of a triangle's front, better side, or both added [best: better, paper: one]
     #[arg(long, value_name = "WHICH")]
     pub sides: Option<SidesName>,
+    /// item-buffer: when a triangle without a pixel counts as seen, by its depth [default: plain]
+    #[arg(long, value_name = "RULE")]
+    pub rescue: Option<RescueName>,
     #[command(flatten)]
     pub rays: RayFlags,
 }
@@ -236,8 +239,7 @@ names! {
     EstimatorName => Estimator {
         // Weighted pixels: unbiased at any triangle size
         Coverage => Estimator::Coverage,
-        // The paper's: a camera sees a triangle or not, not there yet
-        #[value(hide = true)]
+        // The paper's: a camera sees a triangle or not
         ItemBuffer => Estimator::ItemBuffer,
         // Rays from the triangle to the cameras; needs --backend embree
         Surface => Estimator::Surface,
@@ -265,6 +267,18 @@ names! {
         Better => Sides::Better,
         // Both added
         Sum => Sides::Sum,
+    }
+}
+
+names! {
+    /// `--rescue`.
+    RescueName => DepthRescue {
+        // Seen unless the depth buffer is clearly in front; walls of up to three pixels leak
+        Plain => DepthRescue::Plain,
+        // Seen only where the nearest pixel is empty or shows the same surface
+        Strict => DepthRescue::Strict,
+        // Hidden
+        None => DepthRescue::None,
     }
 }
 

@@ -3,7 +3,7 @@
 use outsight::camera::{CameraPattern, CameraSphere, CameraWeights};
 use outsight::pipeline::SimplifyRequest;
 use outsight::simplify::{Boundary, PlaneWeight, Topology};
-use outsight::visibility::MeasureOptions;
+use outsight::visibility::{Estimator, MeasureOptions};
 use serde_json::{Value, json};
 
 /// Options of measuring. A resolution of `null` was chosen by the number of triangles.
@@ -31,6 +31,7 @@ pub fn measure(options: &MeasureOptions) -> Value {
         "target_error": options.rays.target_error,
         "target_error_p99": options.rays.target_error_p99,
         "seed": options.rays.seed,
+        "rescue": (options.estimator == Estimator::ItemBuffer).then(|| options.rescue.name()),
     })
 }
 

@@ -57,7 +57,6 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
         let inputs: Vec<&Path> = request.occluders.iter().chain([&request.input]).map(PathBuf::as_path).collect();
         outputs::check(planned, &inputs, request.force)?;
     }
-    presets::announce_stand_ins(&flags.looking, console);
     let task = Task::Measure { resolution: request.measure.resolution.unwrap_or(0) };
     let writes_mesh = request.output.as_deref().is_some_and(|p| !["npy", "csv"].contains(&ending_of(p).as_str()));
     let watch = Watch::new(console, task).writing_mesh(writes_mesh);
@@ -95,6 +94,10 @@ fn text(report: &MeasureReport, request: &MeasureRequest) -> String {
         ("looked with", looked_with(report)),
         ("time", format!("{} ({} looking)", duration(report.seconds.total), duration(report.seconds.visibility))),
     ];
+    if let (Some(rescue), Some(pieces)) = (report.rescue, report.subdivided) {
+        let rescued = format!("{:.1} % of what is seen has no pixel of its own", 100.0 * rescue.rate);
+        rows.insert(4, ("cut into", format!("{} pieces; {rescued}", count(pieces))));
+    }
     if seen.mesh_sides != seen.mesh {
         rows.insert(1, ("with backs", format!("{:.4}  (--sides {})", seen.mesh_sides, report.sides)));
     }

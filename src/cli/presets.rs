@@ -6,7 +6,6 @@ use outsight::simplify::{PlaneWeight, SimplifyOptions, Topology};
 use outsight::visibility::{Estimator, Hidden, MeasureOptions, RayOptions};
 
 use super::collapsing::{CollapseFlags, MetricName, RefitName};
-use super::console::Console;
 use super::flags::{GlobalFlags, LookingFlags, Preset, RayFlags};
 
 /// p in V^p: both presets square, as the paper does.
@@ -30,10 +29,12 @@ pub fn measure_options(flags: &LookingFlags, global: &GlobalFlags) -> Result<Mea
         estimator: flags.estimator.map_or(preset.estimator, Into::into),
         sides: flags.sides.map_or(preset.sides, Into::into),
         rays: ray_options(&flags.rays, preset.rays, global.seed),
+        rescue: flags.rescue.map_or(preset.rescue, Into::into),
         memory_limit: global.memory_limit,
     };
     options.check()?;
-    match flags.rays.given().find(|&(_, estimator)| estimator != options.estimator) {
+    let rescue = flags.rescue.is_some().then_some(("--rescue", Estimator::ItemBuffer));
+    match rescue.into_iter().chain(flags.rays.given()).find(|&(_, estimator)| estimator != options.estimator) {
         None => Ok(options),
         Some((name, estimator)) => {
             let [of, not] = [estimator, options.estimator].map(Estimator::name);
@@ -52,16 +53,6 @@ fn ray_options(flags: &RayFlags, preset: RayOptions, seed: u64) -> RayOptions {
         target_error: flags.target_error,
         target_error_p99: flags.target_error_p99,
         seed,
-    }
-}
-
-/// Says where the preset `paper` cannot be followed yet, for commands that measure.
-pub fn announce_stand_ins(flags: &LookingFlags, console: &Console) {
-    if flags.preset == Preset::Paper && flags.estimator.is_none() {
-        console.announce(
-            "--preset paper: the estimator item-buffer is not in this version, coverage stands in; --estimator coverage \
-             silences this",
-        );
     }
 }
 

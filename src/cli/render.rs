@@ -71,9 +71,6 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
     let planned = Planned { path: &request.output, kind: Kind::Picture, format: None };
     outputs::check(planned, &[&request.input], request.force)?;
     let heat = request.style == Style::Heat;
-    if heat {
-        presets::announce_stand_ins(&flags.looking, console);
-    }
     let resolution = request.measure.resolution.unwrap_or(0);
     let task = if heat { Task::Measure { resolution } } else { Task::Read };
     render_file(&request, &Watch::new(console, task))?;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args};
 use outsight::Error;
-use outsight::pipeline::{LevelReport, LevelRequest, Metric, SimplifyReport, SimplifyRequest, run_simplify};
+use outsight::pipeline::{LevelReport, LevelRequest, SimplifyReport, SimplifyRequest, run_simplify};
 use outsight::simplify::{SimplifyOptions, Target};
 use serde::Serialize;
 use serde_json::Value;
@@ -70,9 +70,6 @@ struct Object<'a> {
 pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
     let request = request(flags, console)?;
     check_outputs(&request, console.global.json)?;
-    if request.metric == Metric::Visibility {
-        presets::announce_stand_ins(&flags.looking, console);
-    }
     let task = Task::Simplify { resolution: request.measure.resolution.unwrap_or(0) };
     let watch = Watch::new(console, task).writing_mesh(true).deleting_knowingly(flags.collapse.hidden.is_some());
     let report = run_simplify(&request, &watch)?;

@@ -8,11 +8,13 @@ pub mod adjacency;
 mod part;
 mod rings;
 pub mod shapes;
+mod subdivision;
 mod weld;
 
 pub(crate) use part::number_marked;
 pub use part::{Remainder, compose_maps};
 pub use rings::VertexTriangles;
+pub use subdivision::Subdivision;
 pub use weld::{Welder, weld};
 
 use glam::DVec3;

@@ -7,7 +7,7 @@ use crate::io::{self, Loaded, ReadOptions, TriangleAttributes, WriteOptions};
 use crate::mesh::TriMesh;
 use crate::pipeline::{Clock, Observer};
 use crate::report::colour::ColourMap;
-use crate::visibility::{MeasureOptions, StandardError, Subject, Visibility};
+use crate::visibility::{MeasureOptions, Rescue, StandardError, Subject, Visibility};
 
 /// What [`measure_file`] does.
 #[derive(Debug, Clone)]
@@ -53,6 +53,12 @@ pub struct MeasureReport {
     pub standard_error: Option<ErrorSummary>,
     /// Triangles of occluders.
     pub occluder_triangles: usize,
+    /// Pieces that the triangles were cut into, under the estimator `item-buffer`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub subdivided: Option<usize>,
+    /// How often depth stood in for a pixel, under the estimator `item-buffer`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rescue: Option<RescueSummary>,
 }
 
 /// How exact a measurement is.
@@ -71,6 +77,23 @@ pub struct ErrorSummary {
 impl From<&StandardError> for ErrorSummary {
     fn from(error: &StandardError) -> Self {
         Self { mesh: error.of_mesh, p99: error.p99, samples: error.samples, end: error.end.name() }
+    }
+}
+
+/// Pairs of a piece and a camera that the piece faces: how many without a pixel were rescued.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct RescueSummary {
+    /// Pairs without a pixel.
+    pub without_pixel: u64,
+    /// Those of them that count as seen.
+    pub rescued: u64,
+    /// The share of the rescued among all that count as seen.
+    pub rate: f64,
+}
+
+impl From<Rescue> for RescueSummary {
+    fn from(rescue: Rescue) -> Self {
+        Self { without_pixel: rescue.without_pixel, rescued: rescue.rescued, rate: rescue.rate() }
     }
 }
 
@@ -129,6 +152,8 @@ pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result
             mesh_sides: visibility.of_mesh_sides(),
             never_seen: visibility.never_seen(),
         },
+        subdivided: visibility.details().pieces,
+        rescue: visibility.details().rescue.map(Into::into),
         seconds: MeasureSeconds { read, build, visibility: looked, total: clock.total() },
         rays: visibility.details().rays,
         standard_error: visibility.details().standard_error.as_ref().map(ErrorSummary::from),

@@ -30,6 +30,15 @@ pub struct Hit {
     pub side: Side,
 }
 
+/// One step of depth in an item buffer, in unit-sphere units, for a mesh that reaches `extent` from the centre.
+///
+/// Every backend counts depth in these steps from the centre, toward the near camera. 2³⁰ of them reach a little farther
+/// than the mesh: rounding to `f32` may carry a vertex past its extent.
+#[must_use]
+pub fn depth_step(window: Window, extent: f64) -> f64 {
+    1.0001 * extent.max(window.half_width) / f64::from(1 << 30)
+}
+
 /// The two item buffers of an axis: what the near and the far camera see in each pixel.
 ///
 /// Both cameras share the pixel lattice: the far image is not mirrored. Rows go upward.
@@ -72,6 +81,16 @@ impl ItemBufferPair {
         self.keys.iter().map(move |k| decode(k[1]).map(from_behind))
     }
 
+    /// What the near and the far camera see at a pixel, each with its depth (see [`depth_step`]); `None` where it is empty.
+    #[inline]
+    #[must_use]
+    pub fn at(&self, pixel: usize) -> Option<[(i32, Hit); 2]> {
+        let [near, far] = self.keys[pixel];
+        let (front, back) = (decode(near)?, decode(far)?);
+        let depth = |closeness: u64| (closeness >> 32) as u32 ^ 0x8000_0000;
+        Some([(depth(near) as i32, front), (depth(!far) as i32, Hit { side: back.side.opposite(), ..back })])
+    }
+
     /// Pixels in which the cameras see anything; the same number for both.
     #[must_use]
     pub fn covered(&self) -> u64 {
@@ -83,7 +102,8 @@ impl ItemBufferPair {
         self.keys.fill([0; 2]);
     }
 
-    /// Offers a surface point to both cameras: `depth` grows toward the near one, `side` is what that one sees.
+    /// Offers a surface point to both cameras: `depth`, in steps of [`depth_step`], grows toward the near one, `side` is what
+    /// that one sees.
     #[inline]
     pub fn offer(&mut self, pixel: usize, depth: i32, hit: Hit) {
         offer(&mut self.keys[pixel], depth, tag(hit));

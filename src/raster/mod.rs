@@ -17,6 +17,6 @@ mod scene;
 mod shade;
 
 pub use draw::Screen;
-pub use item_buffer::{Hit, ItemBufferPair, Side};
+pub use item_buffer::{Hit, ItemBufferPair, Side, depth_step};
 pub use scene::Scene;
 pub use shade::{GreyImage, shade};

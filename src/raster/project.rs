@@ -1,9 +1,10 @@
 use crate::camera::View;
+use crate::raster::item_buffer::depth_step;
 
 /// A vertex as a view sees it.
 ///
-/// Column and row are in units of 2^-`bits` pixels, 0 at the centre of pixel 0; depth is in units of
-/// `extent` · 2⁻³⁰ and grows toward the near camera.
+/// Column and row are in units of 2^-`bits` pixels, 0 at the centre of pixel 0; depth is in steps of
+/// [`depth_step`] and grows toward the near camera.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[repr(C, align(16))]
 pub(super) struct ScreenVertex {
@@ -48,11 +49,10 @@ impl Projection {
         }
         let per_unit = f64::from(1_u32 << bits) / s;
         let offset = (h / s - 0.5) * f64::from(1_u32 << bits);
-        let per_depth = f64::from(1_u32 << 30) / reach;
         Some(Self {
             column: ((view.right * per_unit).to_array(), offset),
             row: ((view.up * per_unit).to_array(), offset),
-            depth: (view.toward * per_depth).to_array(),
+            depth: (view.toward / depth_step(view.window, extent)).to_array(),
             bits,
         })
     }

@@ -2,8 +2,8 @@ use crate::camera::CameraSphere;
 use crate::error::Result;
 use crate::progress::Progress;
 use crate::visibility::{
-    Details, DiagramRecorder, Estimator, MeasureOptions, Shapes, Subject, Visibility, coverage, hemisphere, pool,
-    surface,
+    Details, DiagramRecorder, Estimator, MeasureOptions, Shapes, Subject, Visibility, coverage, hemisphere,
+    item_buffer, pool, surface,
 };
 
 /// Who looks how, for every estimator alike.
@@ -39,7 +39,7 @@ pub(super) fn estimate(subject: &Subject<'_>, looking: &Looking<'_>) -> Result<V
         Estimator::Coverage => coverage::estimate(subject, &shapes, looking)?,
         Estimator::Surface => surface::estimate(subject, &shapes, looking)?,
         Estimator::Hemisphere => hemisphere::estimate(subject, &shapes, looking)?,
-        other @ Estimator::ItemBuffer => return Err(other.unavailable()),
+        Estimator::ItemBuffer => item_buffer::estimate(subject, &shapes, looking)?,
     };
     finish(subject, &shapes, found, looking)
 }

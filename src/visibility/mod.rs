@@ -11,10 +11,13 @@ mod estimate;
 mod hemisphere;
 mod hidden;
 mod importance;
+mod item_buffer;
 mod options;
+mod pieces;
 mod pool;
 mod ray_options;
 mod rays;
+mod rescue;
 mod shapes;
 mod subject;
 mod surface;
@@ -23,7 +26,7 @@ pub use convergence::{NestedVisibility, mean_difference, nested_visibility};
 pub use coverage::CoverageCounts;
 pub use diagram::{DiagramRecorder, VisibilityDiagram};
 pub use importance::{Hidden, importance};
-pub use options::{Estimator, MeasureOptions, Sides};
+pub use options::{DepthRescue, Estimator, MeasureOptions, Sides};
 pub use ray_options::{MOST_SAMPLES, PartlySeen, RayOptions};
 pub use subject::Subject;
 
@@ -53,7 +56,9 @@ pub struct Details {
     pub standard_error: Option<StandardError>,
     /// Depth rescue, from [`Estimator::ItemBuffer`].
     pub rescue: Option<Rescue>,
-    /// Rays that were cast; 0 where pictures were drawn.
+    /// Pieces that the triangles were cut into, from [`Estimator::ItemBuffer`].
+    pub pieces: Option<usize>,
+    /// Rays that were cast, 0 where pictures were drawn.
     pub rays: u64,
 }
 
@@ -96,12 +101,25 @@ impl SamplingEnd {
 }
 
 /// How often a triangle without a pixel was called seen by its depth; Zhang & Turk 2002, section 4.
+///
+/// Counted are pairs of a piece of a triangle and a camera that faces a side of it which needs rescue: the front, and the
+/// back too unless [`Sides::One`] is in force.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Rescue {
-    /// Pairs of a triangle and a camera in front of it without a pixel of it.
+    /// Pairs with a pixel.
+    pub with_pixel: u64,
+    /// Pairs without.
     pub without_pixel: u64,
-    /// Those that the depth buffer let pass.
+    /// Those without that the depth buffer let pass.
     pub rescued: u64,
+}
+
+impl Rescue {
+    /// The share of the pairs called seen that have no pixel; 0 where none are seen.
+    #[must_use]
+    pub fn rate(&self) -> f64 {
+        self.rescued as f64 / (self.with_pixel + self.rescued).max(1) as f64
+    }
 }
 
 impl Visibility {

@@ -9,7 +9,7 @@ pub enum Estimator {
     /// Pixels, weighted: unbiased at any triangle size.
     #[default]
     Coverage,
-    /// The paper's: a camera sees a triangle or it does not.
+    /// The paper's: a camera sees a piece of a triangle or it does not.
     ItemBuffer,
     /// Rays from points on the triangle to the cameras: no pixel to miss it.
     Surface,
@@ -32,8 +32,7 @@ impl Estimator {
     /// Checks that the estimator is there, and that `backend` can serve it.
     fn check(self, backend: BackendKind) -> Result<()> {
         match self {
-            Self::Coverage => Ok(()),
-            Self::ItemBuffer => Err(self.unavailable()),
+            Self::Coverage | Self::ItemBuffer => Ok(()),
             Self::Surface | Self::Hemisphere if backend.casts_rays() => Ok(()),
             Self::Surface | Self::Hemisphere => {
                 let (name, backend) = (self.name(), backend.name());
@@ -41,14 +40,6 @@ impl Estimator {
                 Err(Error::Option { name: "--estimator", message })
             }
         }
-    }
-
-    pub(super) fn unavailable(self) -> Error {
-        let message = format!(
-            "estimator {} is not available: this version does not have it yet; use --estimator coverage",
-            self.name()
-        );
-        Error::Unavailable { message }
     }
 }
 
@@ -85,6 +76,31 @@ impl Sides {
     }
 }
 
+/// What [`Estimator::ItemBuffer`] does for a triangle that faces a camera but has no pixel in its picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum DepthRescue {
+    /// It counts as seen if one of its corners is not clearly behind the farthest of the four pixels around it, or if one
+    /// of them is empty: what the paper describes, with tolerances of ours. Walls of up to three pixels leak.
+    #[default]
+    Plain,
+    /// Only the nearest pixel counts, and only if it is empty or shows the same surface.
+    Strict,
+    /// It counts as hidden: biased low where triangles are smaller than pixels.
+    None,
+}
+
+impl DepthRescue {
+    /// The name on the command line and in reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Plain => "plain",
+            Self::Strict => "strict",
+            Self::None => "none",
+        }
+    }
+}
+
 /// How visibility is measured. `Default` is the preset `best`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasureOptions {
@@ -102,6 +118,8 @@ pub struct MeasureOptions {
     pub sides: Sides,
     /// How rays are cast, where the estimator casts any.
     pub rays: RayOptions,
+    /// What happens to triangles without a pixel; only [`Estimator::ItemBuffer`] asks.
+    pub rescue: DepthRescue,
     /// Bytes that the images of all threads together may take; `None` for no limit.
     pub memory_limit: Option<u64>,
 }
@@ -116,6 +134,7 @@ impl Default for MeasureOptions {
             estimator: Estimator::Coverage,
             sides: Sides::Better,
             rays: RayOptions::default(),
+            rescue: DepthRescue::Plain,
             memory_limit: None,
         }
     }
@@ -125,12 +144,16 @@ impl Default for MeasureOptions {
 const TRIANGLES_AT_480: f64 = 250_000.0;
 
 impl MeasureOptions {
-    /// The options nearest to the text of Zhang & Turk that this version can do: 480 pixels, equal weights, front side.
-    ///
-    /// Their estimator, [`Estimator::ItemBuffer`], is not there yet; the preset counts coverage.
+    /// The options of Zhang & Turk: their estimator, 480 pixels, equal weights, front side.
     #[must_use]
     pub fn paper() -> Self {
-        Self { camera_weights: CameraWeights::Equal, resolution: Some(480), sides: Sides::One, ..Self::default() }
+        Self {
+            camera_weights: CameraWeights::Equal,
+            resolution: Some(480),
+            estimator: Estimator::ItemBuffer,
+            sides: Sides::One,
+            ..Self::default()
+        }
     }
 
     /// Pixels along an image's side for a mesh of so many triangles: what was asked, or enough for about 170 counts on

@@ -32,7 +32,7 @@ impl<'a> Subject<'a> {
     /// As [`Subject::new`]; [`Error::Limit`] if there are more triangles than can be numbered.
     pub fn among(mesh: &'a TriMesh, occluders: &'a [TriMesh], backend: BackendKind) -> Result<Self> {
         let frame = Frame::of(mesh);
-        let unit = if occluders.is_empty() { frame.unit_copy(mesh) } else { frame.unit_copy_among(mesh, occluders)? };
+        let unit = frame.among(frame.unit_copy(mesh), mesh.triangle_count(), occluders)?;
         Ok(Self { mesh, occluders, frame, machine: Machine::new(backend, unit)? })
     }
 

@@ -89,7 +89,9 @@ pub fn hemisphere_on_brute() -> Pair {
 #[cfg(feature = "embree")]
 pub fn surface_on_embree() -> Pair {
     let options = MeasureOptions { backend: BackendKind::Embree, ..surface_on_brute().options };
-    Pair { options, coarser: 1, rougher: 0, ..surface_on_brute() }
+    // On fine meshes a few rays to cameras that look along a triangle are lost: 2e-13 of an icosphere of 20,480.
+    // Rays are `f32`, and such cameras hardly count.
+    Pair { options, coarser: 1, rougher: 0, certain: 1e-12, ..surface_on_brute() }
 }
 
 #[cfg(feature = "embree")]

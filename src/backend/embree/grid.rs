@@ -7,7 +7,7 @@ use crate::backend::embree::EmbreeScene;
 use crate::backend::embree::scene::{Crossing, Line};
 use crate::camera::{View, Window};
 use crate::error::{Error, Result};
-use crate::raster::{Hit, ItemBufferPair, Side};
+use crate::raster::{Hit, ItemBufferPair, Side, depth_step};
 
 /// Rays of a packet: pixels side by side in a row.
 const PACKET: u32 = 8;
@@ -62,7 +62,7 @@ impl EmbreeScene {
             .map(|v| DVec3::from_array(self.scene.positions()[v as usize].map(f64::from)));
         let (triangle, reversed) = self.primitives[crossing.primitive as usize];
         if let Some((depth, counter_clockwise)) = depth_at(centre, view.toward, corners) {
-            let depth = (depth / (MARGIN * self.extent) * f64::from(1 << 30)).round() as i32;
+            let depth = (depth / depth_step(view.window, self.extent)).round() as i32;
             let side = if counter_clockwise == reversed { Side::Back } else { Side::Front };
             buffers.offer(crossing.line as usize, depth, Hit { triangle, side });
         }
