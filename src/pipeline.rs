@@ -24,7 +24,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::error::Result;
-use crate::io::{self, Loaded, TriangleAttributes, WriteOptions};
+use crate::io::{self, Attributes, Loaded, WriteOptions};
 use crate::progress::{CancelFlag, Progress, Silent};
 use crate::visibility::{Look, Subject};
 
@@ -59,7 +59,7 @@ pub fn run_simplify(request: &SimplifyRequest, observer: &dyn Observer) -> Resul
     observer.check()?;
     for (level, wanted) in simplified.levels.iter().zip(&request.levels) {
         let options = WriteOptions { force: request.force, format: request.format };
-        io::write(&wanted.output, &level.mesh, &TriangleAttributes::default(), &options)?;
+        io::write(&wanted.output, &level.mesh, &Attributes::default(), &options)?;
     }
     seconds.write = clock.lap();
     seconds.total = clock.total();

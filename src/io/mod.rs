@@ -25,7 +25,7 @@ mod text;
 use std::path::Path;
 
 pub use atomic::{check_target, write_atomic};
-pub use encode::{TriangleAttributes, WriteOptions, write};
+pub use encode::{Attributes, WriteOptions, write};
 pub use format::Format;
 pub use table::{write_npy_f32, write_npy_f64, write_visibility_csv};
 

@@ -3,10 +3,10 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::error::Result;
-use crate::io::{self, Loaded, ReadOptions, TriangleAttributes, WriteOptions};
+use crate::io::{self, Attributes, Loaded, ReadOptions, WriteOptions};
 use crate::pipeline::{Clock, Observer};
 use crate::report::colour::ColourMap;
-use crate::visibility::{MeasureOptions, Subject, Visibility};
+use crate::visibility::{MeasureOptions, Subject, Visibility, per_vertex};
 
 /// What [`measure_file`] does.
 #[derive(Debug, Clone)]
@@ -114,7 +114,9 @@ fn write(path: &Path, loaded: &Loaded, visibility: &Visibility, request: &Measur
         }
         _ => {
             let colours: Vec<[u8; 3]> = values.iter().map(|&v| request.colour_map.colour(v)).collect();
-            let attributes = TriangleAttributes { visibility: Some(values), colours: Some(&colours) };
+            let quality = per_vertex(&loaded.mesh, values);
+            let attributes =
+                Attributes { visibility: Some(values), colours: Some(&colours), vertex_quality: Some(&quality) };
             io::write(path, &loaded.mesh, &attributes, &WriteOptions { force: request.force, format: None })
         }
     }

@@ -10,6 +10,7 @@ mod estimate;
 mod hidden;
 mod importance;
 mod options;
+mod per_vertex;
 mod pool;
 mod shapes;
 mod subject;
@@ -18,6 +19,7 @@ pub use coverage::CoverageCounts;
 pub use diagram::{DiagramRecorder, VisibilityDiagram};
 pub use importance::{Hidden, importance};
 pub use options::{Estimator, MeasureOptions, Sides};
+pub use per_vertex::per_vertex;
 pub use subject::Subject;
 
 use crate::error::Result;
