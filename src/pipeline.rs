@@ -9,11 +9,13 @@
 //! [`measure_file`], [`compare_files`] and [`render_file`] leave it early or look at its two ends.
 
 mod compare;
+mod diagram;
 mod measure;
 mod render;
 mod simplify;
 
 pub use compare::{CompareReport, CompareRequest, GeometricReport, TestReport, compare_files};
+pub use diagram::DiagramRequest;
 pub use measure::{MeasureReport, MeasureRequest, MeasureSeconds, VisibilitySummary, measure_file};
 pub use render::{RenderRequest, Style, render_file};
 pub use simplify::{

@@ -87,6 +87,16 @@ impl CameraSphere {
         &self.directions
     }
 
+    /// How much a camera counts, an integer.
+    ///
+    /// # Panics
+    /// If there is no such camera.
+    #[must_use]
+    pub fn weight(&self, camera: u32) -> u64 {
+        let mine = self.axes.iter().find(|axis| axis.near == camera || axis.far == camera);
+        mine.expect("every camera belongs to an axis").weight
+    }
+
     /// The pairs of opposite cameras, ascending by the smaller number.
     #[must_use]
     pub fn axes(&self) -> &[Axis] {

@@ -137,6 +137,7 @@ fn measure_request(files: &Files, looking: &MeasureOptions) -> MeasureRequest {
         read: ReadOptions::default(),
         measure: looking.clone(),
         output: Some(files.heat_mesh.clone()),
+        diagram: None,
         colour_map: ColourMap::Paper,
         force: true,
     }

@@ -31,6 +31,7 @@ Examples:
   outsight measure part.ply                   visibility of the mesh, in a few lines
   outsight measure part.ply -o heat.ply       triangles coloured, with the property visibility
   outsight measure part.ply -o v.npy --json   one number per triangle for NumPy, and a summary
+  outsight measure part.ply --diagram d.npy   which camera sees which triangle
   outsight measure part.ply --preset paper    as Zhang & Turk 2002 did";
 
 /// What clap would write over two lines.

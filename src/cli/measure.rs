@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use outsight::pipeline::{MeasureReport, MeasureRequest, measure_file};
+use outsight::Error;
+use outsight::pipeline::{DiagramRequest, MeasureReport, MeasureRequest, measure_file};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -25,6 +26,12 @@ pub struct Flags {
     /// Visibility of each triangle: .ply with heat colours, .npy or .csv
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// Which camera sees which triangle: .vdg, .npy, or a picture, .png
+    #[arg(long, value_name = "FILE")]
+    diagram: Option<PathBuf>,
+    /// The visible share of each triangle in the diagram too, in steps of 1/255
+    #[arg(long, requires = "diagram")]
+    diagram_fractions: bool,
     /// Heat colours of a .ply: as in the paper, or readable for every eye
     #[arg(long, value_name = "NAME", default_value = "paper")]
     colour_map: ColourMapName,
@@ -41,26 +48,24 @@ struct Object<'a> {
     #[serde(flatten)]
     found: Found,
     output: &'a Option<PathBuf>,
+    diagram: Option<&'a PathBuf>,
     options: Value,
 }
 
 /// Measures, writes, prints.
 pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
     let request = request(flags, console)?;
-    if let Some(path) = &request.output {
-        let planned = Planned { path, kind: Kind::Visibility, format: None };
-        outputs::check(planned, &[&request.input], request.force)?;
-    }
+    check_outputs(&request)?;
     presets::announce_stand_ins(&flags.looking, console);
-    let task = Task::Measure { resolution: request.measure.resolution.unwrap_or(0) };
     let writes_mesh = request.output.as_deref().is_some_and(|p| !["npy", "csv"].contains(&ending_of(p).as_str()));
-    let watch = Watch::new(console, task).writing_mesh(writes_mesh);
+    let watch = Watch::new(console, task(&request)).writing_mesh(writes_mesh);
     let report = measure_file(&request, &watch)?;
     let object = Object {
         report: &report,
         peak_mb: peak_mib(),
         found: watch.found(),
         output: &request.output,
+        diagram: request.diagram.as_ref().map(|diagram| &diagram.output),
         options: in_force::measure(&request.measure),
     };
     console.result(&object, &text(&report, &request), true)
@@ -72,9 +77,35 @@ fn request(flags: &Flags, console: &Console) -> outsight::Result<MeasureRequest>
         read: flags.input.reading.options(&console.global),
         measure: presets::measure_options(&flags.looking, &console.global)?,
         output: flags.output.clone(),
+        diagram: flags.diagram.clone().map(|output| DiagramRequest { output, fractions: flags.diagram_fractions }),
         colour_map: flags.colour_map.into(),
         force: console.global.force,
     })
+}
+
+fn check_outputs(request: &MeasureRequest) -> outsight::Result<()> {
+    let diagram = request.diagram.as_ref().map(|diagram| &diagram.output);
+    if let Some(path) = &request.output {
+        let planned = Planned { path, kind: Kind::Visibility, format: None };
+        outputs::check(planned, &[&request.input], request.force)?;
+    }
+    if let Some(path) = diagram {
+        let planned = Planned { path, kind: Kind::Diagram, format: None };
+        outputs::check(planned, &[&request.input], request.force)?;
+    }
+    if diagram.is_some() && diagram == request.output.as_ref() {
+        let message = "the same file as --output; choose another name".to_owned();
+        return Err(Error::Option { name: "--diagram", message });
+    }
+    Ok(())
+}
+
+fn task(request: &MeasureRequest) -> Task {
+    let resolution = request.measure.resolution.unwrap_or(0);
+    match &request.diagram {
+        None => Task::Measure { resolution },
+        Some(diagram) => Task::Diagram { resolution, cameras: request.measure.cameras, fractions: diagram.fractions },
+    }
 }
 
 fn text(report: &MeasureReport, request: &MeasureRequest) -> String {
@@ -98,6 +129,9 @@ fn text(report: &MeasureReport, request: &MeasureRequest) -> String {
     }
     if let Some(output) = &request.output {
         rows.push(("written", output.display().to_string()));
+    }
+    if let Some(diagram) = &request.diagram {
+        rows.push(("diagram", diagram.output.display().to_string()));
     }
     pairs(&rows)
 }

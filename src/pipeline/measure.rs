@@ -4,7 +4,8 @@ use serde::Serialize;
 
 use crate::error::Result;
 use crate::io::{self, Attributes, Loaded, ReadOptions, WriteOptions};
-use crate::pipeline::{Clock, Observer};
+use crate::pipeline::diagram::Record;
+use crate::pipeline::{Clock, DiagramRequest, Observer};
 use crate::report::colour::ColourMap;
 use crate::visibility::{MeasureOptions, Subject, Visibility, per_vertex};
 
@@ -19,6 +20,8 @@ pub struct MeasureRequest {
     pub measure: MeasureOptions,
     /// A mesh file (PLY carries visibility and heat colours), `.npy` or `.csv` to write.
     pub output: Option<PathBuf>,
+    /// Which camera sees which triangle, to be written too.
+    pub diagram: Option<DiagramRequest>,
     /// Heat colours in a PLY output.
     pub colour_map: ColourMap,
     /// Replace an output that is there.
@@ -77,15 +80,19 @@ pub struct MeasureSeconds {
 pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result<MeasureReport> {
     let mut clock = Clock::start();
     request.measure.check()?;
+    request.diagram.as_ref().map_or(Ok(()), |diagram| diagram.check(&request.measure))?;
     let loaded = io::read(&request.input, &request.read)?;
     observer.mesh_read(&request.input, &loaded)?;
     let read = clock.lap();
     let subject = Subject::new(&loaded.mesh, request.measure.backend)?;
     let build = clock.lap();
-    let visibility = subject.measure(&request.measure, observer)?;
+    let (visibility, record) = look(&subject, request, observer)?;
     let looked = clock.lap();
     if let Some(output) = &request.output {
         write(output, &loaded, &visibility, request)?;
+    }
+    if let (Some(record), Some(diagram)) = (record, &request.diagram) {
+        record.write(&loaded, &subject, &diagram.output, request.force)?;
     }
     Ok(MeasureReport {
         triangles: loaded.mesh.triangle_count(),
@@ -101,6 +108,20 @@ pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result
         },
         seconds: MeasureSeconds { read, build, visibility: looked, total: clock.total() },
     })
+}
+
+fn look(
+    subject: &Subject<'_>,
+    request: &MeasureRequest,
+    observer: &dyn Observer,
+) -> Result<(Visibility, Option<Record>)> {
+    match &request.diagram {
+        None => Ok((subject.measure(&request.measure, observer)?, None)),
+        Some(diagram) => {
+            let (visibility, record) = Record::look(subject, &request.measure, diagram.fractions, observer)?;
+            Ok((visibility, Some(record)))
+        }
+    }
 }
 
 fn write(path: &Path, loaded: &Loaded, visibility: &Visibility, request: &MeasureRequest) -> Result<()> {

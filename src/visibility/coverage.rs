@@ -134,7 +134,7 @@ fn slot(triangle: usize, side: Side) -> usize {
 }
 
 /// Hands over each hit with its number of pixels; neighbouring pixels of one triangle come together.
-fn for_each_run(pixels: impl Iterator<Item = Option<Hit>>, mut take: impl FnMut(Hit, u64)) {
+pub(super) fn for_each_run(pixels: impl Iterator<Item = Option<Hit>>, mut take: impl FnMut(Hit, u64)) {
     let (mut current, mut run) = (None, 0);
     for hit in pixels {
         if hit != current {

@@ -7,6 +7,7 @@
 mod coverage;
 mod diagram;
 mod estimate;
+mod fractions;
 mod hidden;
 mod importance;
 mod options;
@@ -17,6 +18,7 @@ mod subject;
 
 pub use coverage::CoverageCounts;
 pub use diagram::{DiagramRecorder, VisibilityDiagram};
+pub use fractions::visible_fractions;
 pub use importance::{Hidden, importance};
 pub use options::{Estimator, MeasureOptions, Sides};
 pub use per_vertex::per_vertex;
