@@ -11,12 +11,14 @@
 mod compare;
 mod diagram;
 mod measure;
+mod observation;
 mod render;
 mod simplify;
 
 pub use compare::{CompareReport, CompareRequest, GeometricReport, TestReport, compare_files};
 pub use diagram::DiagramRequest;
 pub use measure::{MeasureReport, MeasureRequest, MeasureSeconds, VisibilitySummary, measure_file};
+pub use observation::cache_is_file;
 pub use render::{RenderRequest, Style, render_file};
 pub use simplify::{
     LevelReport, LevelRequest, Metric, Simplified, SimplifyReport, SimplifyRequest, SimplifySeconds, simplify_seen,
@@ -28,7 +30,8 @@ use std::time::Instant;
 use crate::error::Result;
 use crate::io::{self, Attributes, Loaded, WriteOptions};
 use crate::progress::{CancelFlag, Progress, Silent};
-use crate::visibility::{Look, Subject};
+use crate::visibility::{Hidden, Look};
+use observation::Observation;
 
 /// Reads a mesh, looks at it, simplifies it where nobody looks, writes every level.
 ///
@@ -44,13 +47,16 @@ pub fn run_simplify(request: &SimplifyRequest, observer: &dyn Observer) -> Resul
     };
     request.check_levels(mesh.triangle_count())?;
     let mut seconds = SimplifySeconds { read: clock.lap(), ..SimplifySeconds::default() };
+    let mut reused = None;
     let look = match request.metric {
         Metric::Visibility => {
-            let subject = Subject::new(&mesh, request.measure.backend)?;
-            let visibility = subject.measure(&request.measure, observer)?;
+            let mut observation = Observation::of(&mesh, &request.measure, request.cache.as_deref())?;
+            let visibility = observation.visibility(observer)?;
             seconds.visibility = clock.lap();
-            let hidden = request.hidden.marks(&subject, &visibility, &request.measure, observer)?;
+            let hidden = observation.hidden(request.hidden, &visibility, observer)?;
             seconds.hidden = clock.lap();
+            observation.keep(&visibility, (request.hidden == Hidden::Delete).then_some(&hidden))?;
+            reused = observation.reused();
             Some(Look { visibility, hidden })
         }
         Metric::Quadric => None,
@@ -65,7 +71,7 @@ pub fn run_simplify(request: &SimplifyRequest, observer: &dyn Observer) -> Resul
     }
     seconds.write = clock.lap();
     seconds.total = clock.total();
-    Ok(SimplifyReport::new(request, triangles, &simplified, seconds))
+    Ok(SimplifyReport { cache: reused, ..SimplifyReport::new(request, triangles, &simplified, seconds) })
 }
 
 /// Follows a run: its progress, and what its user should know before the long work starts.

@@ -1,4 +1,4 @@
-//! What a measurement leaves besides its numbers, as users meet it: diagrams.
+//! What a measurement leaves besides its numbers, as users meet it: diagrams, kept measurements, explanations.
 
 #![allow(clippy::unwrap_used)]
 
@@ -6,7 +6,13 @@ use std::fs;
 use std::path::Path;
 
 use assert_cmd::Command;
+use outsight::io::{self, Attributes, WriteOptions};
+use outsight::mesh::shapes;
+use serde_json::Value;
 use tempfile::TempDir;
+
+/// Fewer pixels than any default, for speed.
+const SMALL: [&str; 4] = ["--cameras", "18", "--resolution", "64"];
 
 const GEARBOX: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/gearbox.ply.zst");
 
@@ -21,9 +27,10 @@ fn directory() -> TempDir {
     directory
 }
 
-/// What a run left: its exit code and standard error.
+/// What a run left: its exit code, standard output and standard error.
 struct Ended {
     code: i32,
+    out: String,
     err: String,
 }
 
@@ -32,8 +39,15 @@ fn run(directory: &Path, arguments: &[&str]) -> Ended {
     let output = command.current_dir(directory).env_remove("OUTSIGHT_CACHE").args(arguments).output().unwrap();
     Ended {
         code: output.status.code().unwrap(),
+        out: String::from_utf8_lossy(&output.stdout).into_owned(),
         err: String::from_utf8_lossy(&output.stderr).into_owned(),
     }
+}
+
+fn json(directory: &Path, arguments: &[&str]) -> Value {
+    let ended = run(directory, arguments);
+    assert_eq!(ended.code, 0, "{}", ended.err);
+    serde_json::from_str(&ended.out).unwrap()
 }
 
 fn names(directory: &Path) -> Vec<String> {
@@ -88,4 +102,75 @@ fn diagrams_that_cannot_be_are_refused_before_the_work() {
     assert_eq!((ended.code, ended.err.contains("raise the limit")), (5, true), "{}", ended.err);
     assert_eq!(names(home.path()), ["covered.off"]);
     assert_eq!(limited("6").code, 0);
+}
+
+#[test]
+fn a_kept_look_gives_the_same_bytes_without_looking() {
+    let home = directory();
+    // The inner ball is what is hidden.
+    let nested = shapes::nested_spheres(0.5, 2).mesh;
+    let path = home.path().join("nested.ply");
+    io::write(&path, &nested, &Attributes::default(), &WriteOptions::default()).unwrap();
+    let simplify = |output: &str, more: &[&str]| {
+        let arguments = ["simplify", "nested.ply", "-o", output, "-r", "0.1", "--hidden", "delete", "--json"];
+        json(home.path(), &[&arguments[..], &SMALL, more].concat())
+    };
+    let plain = simplify("plain.ply", &[]);
+    assert_eq!(plain["cache"], Value::Null);
+    assert!(plain["hidden_deleted"].as_u64().unwrap() > 200, "{plain}");
+    let measured = json(home.path(), &[&["measure", "nested.ply", "--json", "--cache", "kept"], &SMALL[..]].concat());
+    assert_eq!(measured["cache"], "miss");
+    let runs = ["a.ply", "b.ply"].map(|output| simplify(output, &["--cache", "kept"]));
+    assert_eq!(runs[0]["cache"], "partial", "what is hidden was not asked for before");
+    assert_eq!(runs[1]["cache"], "hit");
+    let bytes = |name: &str| fs::read(home.path().join(name)).unwrap();
+    for name in ["a.ply", "b.ply"] {
+        assert_eq!(bytes(name), bytes("plain.ply"), "{name}");
+    }
+    for run in &runs {
+        assert_eq!(run["hidden_deleted"], plain["hidden_deleted"]);
+    }
+    assert_eq!(names(&home.path().join("kept")).len(), 1, "one file, nothing beside it");
+    let other =
+        json(home.path(), &["measure", GEARBOX, "--json", "--cache", "kept", "--cameras", "6", "--resolution", "64"]);
+    assert_eq!(other["cache"], "miss", "other options, another file");
+    assert_eq!(names(&home.path().join("kept")).len(), 2);
+}
+
+#[test]
+fn a_kept_look_at_another_mesh_or_a_damaged_one_is_an_error() {
+    let home = directory();
+    let moved = COVERED.replace("0 9 1", "0 9 1.5");
+    fs::write(home.path().join("moved.off"), moved).unwrap();
+    let measure = |mesh: &str, more: &[&str]| {
+        let ended = run(home.path(), &[&["measure", mesh, "--cache", "one.seen"][..], &SMALL, more].concat());
+        (ended.code, ended.err)
+    };
+    assert_eq!(measure("covered.off", &[]).0, 0);
+    let kept = fs::read(home.path().join("one.seen")).unwrap();
+    let (code, message) = measure("moved.off", &[]);
+    assert_eq!(code, 3);
+    assert!(message.contains("error: one.seen: this measurement is of another mesh; give --cache"), "{message}");
+    let (code, message) = measure("covered.off", &["--sides", "one"]);
+    assert_eq!((code, message.contains("other options")), (3, true), "{message}");
+    assert_eq!(fs::read(home.path().join("one.seen")).unwrap(), kept, "errors change nothing");
+    fs::write(home.path().join("one.seen"), &kept[..kept.len() - 1]).unwrap();
+    let (code, message) = measure("covered.off", &[]);
+    assert_eq!(
+        (code, message.contains("one.seen: this measurement is damaged or truncated; delete it")),
+        (3, true),
+        "{message}"
+    );
+    fs::write(home.path().join("one.seen"), COVERED).unwrap();
+    let (code, message) = measure("covered.off", &[]);
+    assert_eq!((code, message.contains("no measurement")), (3, true), "{message}");
+    assert_eq!(fs::read_to_string(home.path().join("one.seen")).unwrap(), COVERED, "nothing foreign is overwritten");
+}
+
+#[test]
+fn an_interrupted_run_keeps_nothing() {
+    let home = directory();
+    let ended = run(home.path(), &["measure", GEARBOX, "--cache", "kept", "--time-limit", "0.3", "--cameras", "4098"]);
+    assert_eq!(ended.code, 5, "{}", ended.err);
+    assert!(names(home.path()).iter().all(|name| name != "kept" || names(&home.path().join("kept")).is_empty()));
 }

@@ -8,6 +8,7 @@ use outsight::pipeline::{DiagramRequest, MeasureReport, MeasureRequest, measure_
 use serde::Serialize;
 use serde_json::Value;
 
+use super::cache::{CacheFlags, reused};
 use super::console::Console;
 use super::estimate::Task;
 use super::failure::Failure;
@@ -37,6 +38,8 @@ pub struct Flags {
     colour_map: ColourMapName,
     #[command(flatten)]
     looking: LookingFlags,
+    #[command(flatten)]
+    cache: CacheFlags,
 }
 
 /// The library's report with what only the program knows.
@@ -79,6 +82,7 @@ fn request(flags: &Flags, console: &Console) -> outsight::Result<MeasureRequest>
         output: flags.output.clone(),
         diagram: flags.diagram.clone().map(|output| DiagramRequest { output, fractions: flags.diagram_fractions }),
         colour_map: flags.colour_map.into(),
+        cache: flags.cache.place()?,
         force: console.global.force,
     })
 }
@@ -122,7 +126,15 @@ fn text(report: &MeasureReport, request: &MeasureRequest) -> String {
                 report.backend, report.estimator, report.cameras, report.resolution
             ),
         ),
-        ("time", format!("{} ({} looking)", duration(report.seconds.total), duration(report.seconds.visibility))),
+        (
+            "time",
+            format!(
+                "{} ({} looking{})",
+                duration(report.seconds.total),
+                duration(report.seconds.visibility),
+                reused(report.cache)
+            ),
+        ),
     ];
     if seen.mesh_sides != seen.mesh {
         rows.insert(1, ("with backs", format!("{:.4}  (--sides {})", seen.mesh_sides, report.sides)));

@@ -4,6 +4,7 @@
 //! the first, `flags` and `presets` the second, `failure` the third.
 
 mod bundled;
+mod cache;
 mod collapsing;
 mod compare;
 mod completions;

@@ -5,9 +5,10 @@ use serde::Serialize;
 use crate::error::Result;
 use crate::io::{self, Attributes, Loaded, ReadOptions, WriteOptions};
 use crate::pipeline::diagram::Record;
+use crate::pipeline::observation::Observation;
 use crate::pipeline::{Clock, DiagramRequest, Observer};
 use crate::report::colour::ColourMap;
-use crate::visibility::{MeasureOptions, Subject, Visibility, per_vertex};
+use crate::visibility::{MeasureOptions, Visibility, per_vertex};
 
 /// What [`measure_file`] does.
 #[derive(Debug, Clone)]
@@ -24,6 +25,9 @@ pub struct MeasureRequest {
     pub diagram: Option<DiagramRequest>,
     /// Heat colours in a PLY output.
     pub colour_map: ColourMap,
+    /// Where measurements are kept from run to run: a directory, or one file that ends in `.seen`. A run that writes a
+    /// diagram leaves it alone.
+    pub cache: Option<PathBuf>,
     /// Replace an output that is there.
     pub force: bool,
 }
@@ -47,6 +51,8 @@ pub struct MeasureReport {
     pub seconds: MeasureSeconds,
     /// Which side of a triangle made its visibility.
     pub sides: &'static str,
+    /// `hit` where an earlier run had kept the look, else `miss`; `None` without a cache.
+    pub cache: Option<&'static str>,
 }
 
 /// Visibility of a whole mesh.
@@ -84,15 +90,18 @@ pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result
     let loaded = io::read(&request.input, &request.read)?;
     observer.mesh_read(&request.input, &loaded)?;
     let read = clock.lap();
-    let subject = Subject::new(&loaded.mesh, request.measure.backend)?;
+    // A cache keeps no diagram: who wants one must look.
+    let cache = request.cache.as_deref().filter(|_| request.diagram.is_none());
+    let mut observation = Observation::of(&loaded.mesh, &request.measure, cache)?;
     let build = clock.lap();
-    let (visibility, record) = look(&subject, request, observer)?;
+    let (visibility, record) = look(&mut observation, request, observer)?;
     let looked = clock.lap();
+    observation.keep(&visibility, None)?;
     if let Some(output) = &request.output {
         write(output, &loaded, &visibility, request)?;
     }
     if let (Some(record), Some(diagram)) = (record, &request.diagram) {
-        record.write(&loaded, &subject, &diagram.output, request.force)?;
+        record.write(&loaded, observation.subject()?, &diagram.output, request.force)?;
     }
     Ok(MeasureReport {
         triangles: loaded.mesh.triangle_count(),
@@ -101,6 +110,7 @@ pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result
         backend: request.measure.backend.name(),
         estimator: request.measure.estimator.name(),
         sides: request.measure.sides.name(),
+        cache: observation.reused(),
         visibility: VisibilitySummary {
             mesh: visibility.of_mesh(),
             mesh_sides: visibility.of_mesh_sides(),
@@ -111,13 +121,14 @@ pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result
 }
 
 fn look(
-    subject: &Subject<'_>,
+    observation: &mut Observation<'_>,
     request: &MeasureRequest,
     observer: &dyn Observer,
 ) -> Result<(Visibility, Option<Record>)> {
     match &request.diagram {
-        None => Ok((subject.measure(&request.measure, observer)?, None)),
+        None => Ok((observation.visibility(observer)?, None)),
         Some(diagram) => {
+            let subject = observation.subject()?;
             let (visibility, record) = Record::look(subject, &request.measure, diagram.fractions, observer)?;
             Ok((visibility, Some(record)))
         }

@@ -10,6 +10,7 @@ mod estimate;
 mod fractions;
 mod hidden;
 mod importance;
+mod kept;
 mod options;
 mod per_vertex;
 mod pool;
@@ -20,9 +21,12 @@ pub use coverage::CoverageCounts;
 pub use diagram::{DiagramRecorder, VisibilityDiagram};
 pub use fractions::visible_fractions;
 pub use importance::{Hidden, importance};
+pub use kept::{KeptFault, KeptMeasurement, MeasurementKey};
 pub use options::{Estimator, MeasureOptions, Sides};
 pub use per_vertex::per_vertex;
 pub use subject::Subject;
+
+use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
 use crate::mesh::TriMesh;
@@ -30,7 +34,7 @@ use crate::progress::Progress;
 use shapes::Shapes;
 
 /// The visibility of every triangle of a mesh.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Visibility {
     front: Vec<f64>,
     back: Vec<f64>,
@@ -44,7 +48,7 @@ pub struct Visibility {
 }
 
 /// What only some estimators can say.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Details {
     /// How exact the numbers are, from [`Estimator::Hemisphere`].
     pub standard_error: Option<StandardError>,
@@ -55,7 +59,7 @@ pub struct Details {
 }
 
 /// Standard error of a measurement: one standard deviation of what it would give if repeated.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StandardError {
     /// Of each triangle's V, front side.
     pub per_triangle: Vec<f64>,
@@ -64,7 +68,7 @@ pub struct StandardError {
 }
 
 /// How often a triangle without a pixel was called seen by its depth; Zhang & Turk 2002, section 4.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Rescue {
     /// Pairs of a triangle and a camera in front of it without a pixel of it.
     pub without_pixel: u64,
