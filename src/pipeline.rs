@@ -6,10 +6,11 @@
 //! mesh file → io → mesh → camera → backend → visibility → weights → simplify → io → mesh file
 //! ```
 //!
-//! [`measure_file`], [`compare_files`] and [`render_file`] leave it early or look at its two ends.
+//! [`measure_file`], [`explain_file`], [`compare_files`] and [`render_file`] leave it early or look at its two ends.
 
 mod compare;
 mod diagram;
+mod explain;
 mod measure;
 mod observation;
 mod render;
@@ -17,6 +18,7 @@ mod simplify;
 
 pub use compare::{CompareReport, CompareRequest, GeometricReport, TestReport, compare_files};
 pub use diagram::DiagramRequest;
+pub use explain::{BlockerReport, ExplainReport, ExplainRequest, SightReport, explain_file};
 pub use measure::{MeasureReport, MeasureRequest, MeasureSeconds, VisibilitySummary, measure_file};
 pub use observation::cache_is_file;
 pub use render::{RenderRequest, Style, render_file};

@@ -174,3 +174,38 @@ fn an_interrupted_run_keeps_nothing() {
     assert_eq!(ended.code, 5, "{}", ended.err);
     assert!(names(home.path()).iter().all(|name| name != "kept" || names(&home.path().join("kept")).is_empty()));
 }
+
+#[test]
+fn explain_names_the_triangle_in_the_way_by_its_number_in_the_file() {
+    let home = directory();
+    let cameras = ["--cameras", "6", "--json"];
+    let explain = |more: &[&str]| json(home.path(), &[&["explain", "covered.off"], more, &cameras].concat());
+    let sheet = explain(&["0"]);
+    assert_eq!((&sheet["visibility"], &sheet["side"]), (&0.0.into(), &"front".into()));
+    // Triangle 1 of the file repeats a vertex, so that the plate is 1 in the mesh and 2 in the file.
+    assert_eq!(sheet["blockers"], serde_json::json!([{ "triangle": 2, "cameras": 1 }]));
+    let up = sheet["cameras"].as_array().unwrap().iter().find(|c| c["direction"][2] == 1.0).unwrap();
+    assert_eq!((&up["sight"], &up["blocked_by"]), (&"blocked".into(), &2.into()));
+    assert_eq!((&sheet["blocked"], &sheet["behind"], &sheet["seen"]), (&1.into(), &5.into(), &0.into()));
+    assert_eq!(explain(&["0", "--back"])["visibility"], 1.0);
+    assert_eq!(explain(&["2"])["visibility"], 1.0);
+    let text = run(home.path(), &["explain", "covered.off", "0"]).out;
+    assert!(text.contains("blocked by 2") && text.contains("more, with --all"), "{text}");
+    assert!(run(home.path(), &["explain", "covered.off", "0", "--all"]).out.contains("behind"));
+}
+
+#[test]
+fn explain_says_which_triangles_there_are() {
+    let home = directory();
+    let refused = |more: &[&str]| {
+        let ended = run(home.path(), &[&["explain", "covered.off"], more].concat());
+        (ended.code, ended.err)
+    };
+    let (code, message) = refused(&["3"]);
+    assert_eq!((code, message.contains("which has 0 to 2")), (2, true), "{message}");
+    let (code, message) = refused(&["1"]);
+    assert_eq!((code, message.contains("repeats a vertex")), (3, true), "{message}");
+    assert_eq!(refused(&["-1"]).0, 2);
+    let (code, message) = refused(&["0", "--estimator", "coverage"]);
+    assert_eq!((code, message.contains("leave it out")), (2, true), "{message}");
+}

@@ -34,6 +34,16 @@ Examples:
   outsight measure part.ply --diagram d.npy   which camera sees which triangle
   outsight measure part.ply --preset paper    as Zhang & Turk 2002 did";
 
+/// Behind `outsight explain --help`.
+pub const EXPLAIN: &str = "\
+TRIANGLE counts the file's triangles from 0, as the rows of measure's .csv and .npy do. Rays go from
+four points of the triangle to each camera in front of it, whatever backend measured it.
+
+Examples:
+  outsight explain part.ply 1234              who sees it, and which triangles are in the way
+  outsight explain part.ply 1234 --back --all all cameras, from the other side
+  outsight explain part.ply 1234 --json | jq '.blockers[0]'";
+
 /// What clap would write over two lines.
 pub const SIMPLIFY_USAGE: &str =
     "outsight simplify [OPTIONS] <MESH> -o <FILE> <-t <N>|-r <RATIO>|-e <ERROR>|--lods <LIST>>";

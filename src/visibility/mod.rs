@@ -7,6 +7,7 @@
 mod coverage;
 mod diagram;
 mod estimate;
+mod explain;
 mod fractions;
 mod hidden;
 mod importance;
@@ -19,6 +20,7 @@ mod subject;
 
 pub use coverage::CoverageCounts;
 pub use diagram::{DiagramRecorder, VisibilityDiagram};
+pub use explain::{CameraSight, Explanation, Sight, explain};
 pub use fractions::visible_fractions;
 pub use importance::{Hidden, importance};
 pub use kept::{KeptFault, KeptMeasurement, MeasurementKey};
