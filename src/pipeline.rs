@@ -6,19 +6,26 @@
 //! mesh file → io → mesh → camera → backend → visibility → weights → simplify → io → mesh file
 //! ```
 //!
-//! [`measure_file`], [`compare_files`] [`render_file`] and [`study_convergence`] leave it early or look at its two ends.
+//! [`measure_file`], [`explain_file`], [`study_convergence`], [`compare_files`] and [`render_file`] leave it early or look
+//! at its two ends.
 
 mod compare;
 mod convergence;
+mod diagram;
+mod explain;
 mod measure;
+mod observation;
 mod render;
 mod simplify;
 
 pub use compare::{CompareReport, CompareRequest, GeometricReport, TestReport, compare_files};
 pub use convergence::{ConvergenceError, ConvergenceReport, ConvergenceRequest, MeshConvergence, study_convergence};
+pub use diagram::DiagramRequest;
+pub use explain::{BlockerReport, ExplainReport, ExplainRequest, SightReport, explain_file};
 pub use measure::{
     ErrorSummary, MeasureReport, MeasureRequest, MeasureSeconds, RescueSummary, VisibilitySummary, measure_file,
 };
+pub use observation::cache_is_file;
 pub use render::{RenderRequest, Style, render_file};
 pub use simplify::{
     LevelReport, LevelRequest, Metric, Simplified, SimplifyReport, SimplifyRequest, SimplifySeconds, simplify_seen,
@@ -28,9 +35,10 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::error::Result;
-use crate::io::{self, Loaded, TriangleAttributes, WriteOptions};
+use crate::io::{self, Attributes, Loaded, WriteOptions};
+use crate::pipeline::observation::{Observation, Surrounded};
 use crate::progress::{CancelFlag, Progress, Silent};
-use crate::visibility::{Look, Subject};
+use crate::visibility::{Hidden, Look};
 
 /// Reads a mesh, looks at it, simplifies it where nobody looks, writes every level.
 ///
@@ -47,13 +55,17 @@ pub fn run_simplify(request: &SimplifyRequest, observer: &dyn Observer) -> Resul
     };
     request.check_levels(mesh.triangle_count())?;
     let mut seconds = SimplifySeconds { read: clock.lap(), ..SimplifySeconds::default() };
+    let mut reused = None;
     let look = match request.metric {
         Metric::Visibility => {
-            let subject = Subject::among(&mesh, &occluders, request.measure.backend)?;
-            let visibility = subject.measure(&request.measure, observer)?;
+            let scene = Surrounded { mesh: &mesh, occluders: &occluders };
+            let mut observation = Observation::of(scene, &request.measure, request.cache.as_deref())?;
+            let visibility = observation.visibility(observer)?;
             seconds.visibility = clock.lap();
-            let hidden = request.hidden.marks(&subject, &visibility, &request.measure, observer)?;
+            let hidden = observation.hidden(request.hidden, &visibility, observer)?;
             seconds.hidden = clock.lap();
+            observation.keep(&visibility, (request.hidden == Hidden::Delete).then_some(&hidden))?;
+            reused = observation.reused();
             Some(Look { visibility, hidden })
         }
         Metric::Quadric => None,
@@ -64,11 +76,11 @@ pub fn run_simplify(request: &SimplifyRequest, observer: &dyn Observer) -> Resul
     observer.check()?;
     for (level, wanted) in simplified.levels.iter().zip(&request.levels) {
         let options = WriteOptions { force: request.force, format: request.format };
-        io::write(&wanted.output, &level.mesh, &TriangleAttributes::default(), &options)?;
+        io::write(&wanted.output, &level.mesh, &Attributes::default(), &options)?;
     }
     seconds.write = clock.lap();
     seconds.total = clock.total();
-    Ok(SimplifyReport::new(request, triangles, &simplified, seconds))
+    Ok(SimplifyReport { cache: reused, ..SimplifyReport::new(request, triangles, &simplified, seconds) })
 }
 
 /// Follows a run: its progress, and what its user should know before the long work starts.

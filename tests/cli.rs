@@ -389,8 +389,19 @@ fn manual_and_completions_cover_every_command() {
 #[test]
 fn help_of_every_command_ends_with_examples() {
     let home = directory();
-    let commands =
-        ["demo", "info", "measure", "simplify", "compare", "render", "convert", "doctor", "completions", "man"];
+    let commands = [
+        "demo",
+        "info",
+        "measure",
+        "explain",
+        "simplify",
+        "compare",
+        "render",
+        "convert",
+        "doctor",
+        "completions",
+        "man",
+    ];
     for command in commands {
         let help = run(home.path(), &[command, "--help"]).out;
         let examples = help.split("Example").nth(1).unwrap_or_default();

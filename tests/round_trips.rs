@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use glam::DVec3;
-use outsight::io::{self, Dropped, Format, Loaded, ReadOptions, TriangleAttributes, WriteOptions};
+use outsight::io::{self, Attributes, Dropped, Format, Loaded, ReadOptions, WriteOptions};
 use outsight::mesh::TriMesh;
 
 /// Corners of the unit cube, number 4x + 2y + z.
@@ -40,7 +40,7 @@ fn parse(name: &str, bytes: &[u8]) -> Loaded {
 
 fn written(folder: &Path, name: &str, mesh: &TriMesh) -> Loaded {
     let path = folder.join(name);
-    io::write(&path, mesh, &TriangleAttributes::default(), &WriteOptions::default()).unwrap();
+    io::write(&path, mesh, &Attributes::default(), &WriteOptions::default()).unwrap();
     io::read(&path, &ReadOptions::default()).unwrap()
 }
 
@@ -97,7 +97,7 @@ fn same_mesh_is_written_in_the_same_bytes() {
         let path = folder.path().join(name);
         let write = || {
             let options = WriteOptions { force: true, ..WriteOptions::default() };
-            io::write(&path, &fine_cube(), &TriangleAttributes::default(), &options).unwrap();
+            io::write(&path, &fine_cube(), &Attributes::default(), &options).unwrap();
             std::fs::read(&path).unwrap()
         };
         assert_eq!(write(), write());
@@ -108,20 +108,25 @@ fn same_mesh_is_written_in_the_same_bytes() {
 fn visibility_and_colours_go_into_ply_alone() {
     let folder = tempfile::tempdir().unwrap();
     let visibility = [0.25; 12];
-    let attributes = TriangleAttributes { visibility: Some(&visibility), colours: Some(&[[1, 2, 3]; 12]) };
+    let quality = [0.5; 8];
+    let attributes =
+        Attributes { visibility: Some(&visibility), colours: Some(&[[1, 2, 3]; 12]), vertex_quality: Some(&quality) };
     let path = folder.path().join("v.ply");
     io::write(&path, &cube(), &attributes, &WriteOptions::default()).unwrap();
     let bytes = std::fs::read(&path).unwrap();
     let header_end = bytes.windows(11).position(|w| w == b"end_header\n").unwrap() + 11;
-    assert_eq!(bytes.len(), header_end + 8 * 12 + 12 * (13 + 4 + 3));
+    assert_eq!(bytes.len(), header_end + 8 * (12 + 4) + 12 * (13 + 4 + 3));
     assert!(bytes.ends_with(&[0, 0, 0x80, 0x3e, 1, 2, 3]));
     assert_is_cube(&io::read(&path, &ReadOptions::default()).unwrap(), &[Dropped::Colours, Dropped::OtherProperties]);
 
     let refused = io::write(&folder.path().join("v.obj"), &cube(), &attributes, &WriteOptions::default());
     assert!(matches!(refused, Err(outsight::Error::Option { .. })));
-    let short = TriangleAttributes { visibility: Some(&visibility[1..]), colours: None };
+    let short = Attributes { visibility: Some(&visibility[1..]), ..Attributes::default() };
     let refused = io::write(&path, &cube(), &short, &WriteOptions::default());
     assert!(matches!(refused, Err(outsight::Error::ShapeMismatch { got: 11, expected: 12, .. })));
+    let short = Attributes { vertex_quality: Some(&quality[1..]), ..Attributes::default() };
+    let refused = io::write(&path, &cube(), &short, &WriteOptions::default());
+    assert!(matches!(refused, Err(outsight::Error::ShapeMismatch { got: 7, expected: 8, .. })));
 }
 
 /// Binary numbers of one byte order.
@@ -348,7 +353,7 @@ fn pipe_is_read_by_its_content() {
     let folder = tempfile::tempdir().unwrap();
     for format in Format::ALL {
         let path = folder.path().join(format!("a.{}", format.extension()));
-        io::write(&path, &cube(), &TriangleAttributes::default(), &WriteOptions::default()).unwrap();
+        io::write(&path, &cube(), &Attributes::default(), &WriteOptions::default()).unwrap();
         let loaded = parse("-", &std::fs::read(&path).unwrap());
         assert_eq!(loaded.format, format);
         assert_is_cube(&loaded, &[]);

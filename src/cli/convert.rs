@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use outsight::Error;
-use outsight::io::{self, TriangleAttributes, WriteOptions};
+use outsight::io::{self, Attributes, WriteOptions};
 use outsight::pipeline::Observer;
 use serde::Serialize;
 
@@ -49,7 +49,7 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
     outputs::check(Planned { path: output, kind: Kind::Mesh, format: write.format }, &[input], write.force)?;
     let loaded = io::read(input, &flags.input.reading.options(&console.global))?;
     Watch::new(console, Task::Read).writing_mesh(true).mesh_read(input, &loaded)?;
-    io::write(output, &loaded.mesh, &TriangleAttributes::default(), &write)?;
+    io::write(output, &loaded.mesh, &Attributes::default(), &write)?;
     let report = Report {
         output,
         triangles: loaded.mesh.triangle_count(),

@@ -138,7 +138,9 @@ fn measure_request(files: &Files, looking: &MeasureOptions) -> MeasureRequest {
         measure: looking.clone(),
         occluders: Vec::new(),
         output: Some(files.heat_mesh.clone()),
+        diagram: None,
         colour_map: ColourMap::Paper,
+        cache: None,
         force: true,
     }
 }
@@ -155,6 +157,7 @@ fn heat_request(files: &Files, looking: &MeasureOptions) -> RenderRequest {
         colour_map: ColourMap::Paper,
         legend: true,
         measure: looking.clone(),
+        cache: None,
         force: true,
     }
 }
@@ -171,6 +174,7 @@ fn simplified(input: &Path, output: &Path, metric: Metric, looking: &MeasureOpti
         simplify: SimplifyOptions::default(),
         levels: vec![LevelRequest { targets: vec![Target::Ratio(RATIO)], output: output.to_owned() }],
         format: None,
+        cache: None,
         force: true,
     }
 }

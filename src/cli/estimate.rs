@@ -12,6 +12,15 @@ pub enum Task {
         /// Pixels along the side; 0 where not known before reading.
         resolution: u32,
     },
+    /// Measures, and writes down which camera sees which triangle.
+    Diagram {
+        /// As in `Measure`.
+        resolution: u32,
+        /// Cameras.
+        cameras: usize,
+        /// Also the visible share of each triangle's image.
+        fractions: bool,
+    },
     /// Measures and simplifies.
     Simplify {
         /// Pixels along the side; 0 where not known before reading.
@@ -51,6 +60,10 @@ pub fn memory_bytes(task: Task, triangles: usize) -> u64 {
     let working = match task {
         Task::Read => 0,
         Task::Measure { resolution } => MEASURE_BYTES * triangles + images(resolution),
+        Task::Diagram { resolution, cameras, fractions } => {
+            let row = cameras.div_ceil(64) * 8 + if fractions { cameras } else { 0 };
+            (MEASURE_BYTES + row as u64) * triangles + images(resolution)
+        }
         Task::Simplify { resolution } => SIMPLIFY_BYTES.max(MEASURE_BYTES) * triangles + images(resolution),
         Task::Study { resolution } => (MEASURE_BYTES + STUDY_BYTES) * triangles + images(resolution),
         Task::Compare => COMPARE_BYTES * triangles,

@@ -33,7 +33,18 @@ Examples:
   outsight measure part.ply -o v.npy --json   one number per triangle for NumPy, and a summary
   outsight measure part.ply --preset paper    as Zhang & Turk 2002 did
   outsight measure part.ply --hemisphere +z   never seen from below
-  outsight measure part.ply --occluder floor.ply --occluder wall.ply";
+  outsight measure part.ply --occluder floor.ply --occluder wall.ply
+  outsight measure part.ply --diagram d.npy   which camera sees which triangle";
+
+/// Behind `outsight explain --help`.
+pub const EXPLAIN: &str = "\
+TRIANGLE counts the file's triangles from 0, as the rows of measure's .csv and .npy do. Rays go from
+four points of the triangle to each camera in front of it, whatever backend measured it.
+
+Examples:
+  outsight explain part.ply 1234              who sees it, and which triangles are in the way
+  outsight explain part.ply 1234 --back --all all cameras, from the other side
+  outsight explain part.ply 1234 --json | jq '.blockers[0]'";
 
 /// What clap would write over two lines.
 pub const SIMPLIFY_USAGE: &str =

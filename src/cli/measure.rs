@@ -3,12 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use outsight::pipeline::{ErrorSummary, MeasureReport, MeasureRequest, measure_file};
+use outsight::Error;
+use outsight::pipeline::{DiagramRequest, ErrorSummary, MeasureReport, MeasureRequest, measure_file};
 use outsight::report::table::thousands;
 use outsight::visibility::RayOptions;
 use serde::Serialize;
 use serde_json::Value;
 
+use super::cache::{CacheFlags, reused};
 use super::console::Console;
 use super::estimate::Task;
 use super::failure::Failure;
@@ -27,6 +29,12 @@ pub struct Flags {
     /// Visibility of each triangle: .ply with heat colours, .npy or .csv
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// Which camera sees which triangle: .vdg, .npy, or a picture, .png
+    #[arg(long, value_name = "FILE")]
+    diagram: Option<PathBuf>,
+    /// The visible share of each triangle in the diagram too, in steps of 1/255
+    #[arg(long, requires = "diagram")]
+    diagram_fractions: bool,
     /// Heat colours of a .ply: as in the paper, or readable for every eye
     #[arg(long, value_name = "NAME", default_value = "paper")]
     colour_map: ColourMapName,
@@ -34,6 +42,8 @@ pub struct Flags {
     looking: LookingFlags,
     #[command(flatten)]
     around: OccluderFlags,
+    #[command(flatten)]
+    cache: CacheFlags,
 }
 
 /// The library's report with what only the program knows.
@@ -46,20 +56,16 @@ struct Object<'a> {
     found: Found,
     output: &'a Option<PathBuf>,
     occluders: &'a [PathBuf],
+    diagram: Option<&'a PathBuf>,
     options: Value,
 }
 
 /// Measures, writes, prints.
 pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
     let request = request(flags, console)?;
-    if let Some(path) = &request.output {
-        let planned = Planned { path, kind: Kind::Visibility, format: None };
-        let inputs: Vec<&Path> = request.occluders.iter().chain([&request.input]).map(PathBuf::as_path).collect();
-        outputs::check(planned, &inputs, request.force)?;
-    }
-    let task = Task::Measure { resolution: request.measure.resolution.unwrap_or(0) };
+    check_outputs(&request)?;
     let writes_mesh = request.output.as_deref().is_some_and(|p| !["npy", "csv"].contains(&ending_of(p).as_str()));
-    let watch = Watch::new(console, task).writing_mesh(writes_mesh);
+    let watch = Watch::new(console, task(&request)?).writing_mesh(writes_mesh);
     let report = measure_file(&request, &watch)?;
     let object = Object {
         report: &report,
@@ -67,6 +73,7 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
         found: watch.found(),
         output: &request.output,
         occluders: &request.occluders,
+        diagram: request.diagram.as_ref().map(|diagram| &diagram.output),
         options: in_force::measure(&request.measure),
     };
     console.result(&object, &text(&report, &request), true)
@@ -79,9 +86,36 @@ fn request(flags: &Flags, console: &Console) -> outsight::Result<MeasureRequest>
         measure: presets::measure_options(&flags.looking, &console.global)?,
         occluders: flags.around.occluders.clone(),
         output: flags.output.clone(),
+        diagram: flags.diagram.clone().map(|output| DiagramRequest { output, fractions: flags.diagram_fractions }),
         colour_map: flags.colour_map.into(),
+        cache: flags.cache.place()?,
         force: console.global.force,
     })
+}
+
+fn check_outputs(request: &MeasureRequest) -> outsight::Result<()> {
+    let diagram = request.diagram.as_ref().map(|diagram| &diagram.output);
+    let inputs: Vec<&Path> = request.occluders.iter().chain([&request.input]).map(PathBuf::as_path).collect();
+    if let Some(path) = &request.output {
+        let planned = Planned { path, kind: Kind::Visibility, format: None };
+        outputs::check(planned, &inputs, request.force)?;
+    }
+    if let Some(path) = diagram {
+        let planned = Planned { path, kind: Kind::Diagram, format: None };
+        outputs::check(planned, &inputs, request.force)?;
+    }
+    if diagram.is_some() && diagram == request.output.as_ref() {
+        let message = "the same file as --output; choose another name".to_owned();
+        return Err(Error::Option { name: "--diagram", message });
+    }
+    Ok(())
+}
+
+fn task(request: &MeasureRequest) -> outsight::Result<Task> {
+    let resolution = request.measure.resolution.unwrap_or(0);
+    let Some(diagram) = &request.diagram else { return Ok(Task::Measure { resolution }) };
+    let cameras = request.measure.camera_sphere()?.count();
+    Ok(Task::Diagram { resolution, cameras, fractions: diagram.fractions })
 }
 
 fn text(report: &MeasureReport, request: &MeasureRequest) -> String {
@@ -92,7 +126,15 @@ fn text(report: &MeasureReport, request: &MeasureRequest) -> String {
         ("triangles", count(report.triangles)),
         ("never seen", format!("{} ({never:.1} %)", count(seen.never_seen))),
         ("looked with", looked_with(report)),
-        ("time", format!("{} ({} looking)", duration(report.seconds.total), duration(report.seconds.visibility))),
+        (
+            "time",
+            format!(
+                "{} ({} looking{})",
+                duration(report.seconds.total),
+                duration(report.seconds.visibility),
+                reused(report.cache)
+            ),
+        ),
     ];
     if let (Some(rescue), Some(pieces)) = (report.rescue, report.subdivided) {
         let rescued = format!("{:.1} % of what is seen has no pixel of its own", 100.0 * rescue.rate);
@@ -109,6 +151,9 @@ fn text(report: &MeasureReport, request: &MeasureRequest) -> String {
     }
     if let Some(output) = &request.output {
         rows.push(("written", output.display().to_string()));
+    }
+    if let Some(diagram) = &request.diagram {
+        rows.push(("diagram", diagram.output.display().to_string()));
     }
     pairs(&rows)
 }

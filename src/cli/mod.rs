@@ -4,6 +4,7 @@
 //! the first, `flags` and `presets` the second, `failure` the third.
 
 mod bundled;
+mod cache;
 mod cameras;
 mod collapsing;
 mod compare;
@@ -13,6 +14,7 @@ mod convert;
 mod demo;
 mod doctor;
 mod estimate;
+mod explain;
 mod failure;
 mod flags;
 mod help;
@@ -62,6 +64,9 @@ enum Command {
     /// Measure how well each triangle is seen from outside
     #[command(after_help = help::MEASURE)]
     Measure(measure::Flags),
+    /// Say which cameras see a triangle, and what hides it from the others
+    #[command(after_help = help::EXPLAIN)]
+    Explain(explain::Flags),
     /// Reduce the triangles of a mesh, first where nobody looks
     #[command(after_help = help::SIMPLIFY, override_usage = help::SIMPLIFY_USAGE)]
     Simplify(simplify::Flags),
@@ -131,6 +136,7 @@ fn dispatch(command: &Command, console: &Console) -> Result<(), Failure> {
         Command::Demo(flags) => demo::run(flags, console),
         Command::Info(flags) => info::run(flags, console),
         Command::Measure(flags) => measure::run(flags, console),
+        Command::Explain(flags) => explain::run(flags, console),
         Command::Simplify(flags) => simplify::run(flags, console),
         Command::Compare(flags) => compare::run(flags, console),
         Command::Render(flags) => render::run(flags, console),

@@ -15,6 +15,8 @@ pub enum Kind {
     Mesh,
     /// The visibility of each triangle: PLY, NumPy or CSV.
     Visibility,
+    /// Which camera sees which triangle: diagram file, NumPy or a picture.
+    Diagram,
     /// A PNG picture.
     Picture,
 }
@@ -24,8 +26,14 @@ impl Kind {
         match self {
             Self::Mesh => &["ply", "obj", "stl", "off"],
             Self::Visibility => &["ply", "npy", "csv"],
+            Self::Diagram => &["vdg", "npy", "png"],
             Self::Picture => &["png"],
         }
+    }
+
+    /// The flag that names such an output.
+    fn flag(self) -> &'static str {
+        if self == Self::Diagram { "--diagram" } else { "--output" }
     }
 }
 
@@ -64,7 +72,7 @@ pub fn check(output: Planned<'_>, inputs: &[&Path], force: bool) -> Result<()> {
     check_ending(output)?;
     if let Some(input) = inputs.iter().find(|input| same_file(input, output.path)) {
         let message = format!("{} is also an input; choose another name", input.display());
-        return Err(Error::Option { name: "--output", message });
+        return Err(Error::Option { name: output.kind.flag(), message });
     }
     check_place(output.path, force)
 }
@@ -92,7 +100,7 @@ fn check_ending(output: Planned<'_>) -> Result<()> {
     // A hidden file such as `.ply` has a name and no ending.
     let ending = if output.format.is_some() { String::new() } else { ending_of(&base) };
     let known = output.format.is_some() || output.kind.endings().contains(&ending.as_str());
-    let may_compress = output.kind == Kind::Mesh || ending == "ply";
+    let may_compress = output.kind == Kind::Mesh || ["ply", "vdg"].contains(&ending.as_str());
     if known && (may_compress || !compressed) { Ok(()) } else { Err(needs_name(output.kind)) }
 }
 
@@ -102,9 +110,10 @@ fn needs_name(kind: Kind) -> Error {
     let more = match kind {
         Kind::Mesh => "; .zst or .gz behind it compresses",
         Kind::Visibility => "; .zst or .gz behind .ply compresses",
+        Kind::Diagram => "; .zst or .gz behind .vdg compresses",
         Kind::Picture => "",
     };
-    Error::Option { name: "--output", message: message + more }
+    Error::Option { name: kind.flag(), message: message + more }
 }
 
 fn same_file(a: &Path, b: &Path) -> bool {
@@ -167,7 +176,14 @@ mod tests {
             let error = check(mesh(Path::new(name)), &[], false).unwrap_err();
             assert_eq!(error.exit_code(), 2, "{name}");
         }
-        for (name, kind) in [("x.png.gz", Kind::Picture), ("x.npy.zst", Kind::Visibility), ("-", Kind::Mesh)] {
+        let odd = [
+            ("x.png.gz", Kind::Picture),
+            ("x.npy.zst", Kind::Visibility),
+            ("x.ply", Kind::Diagram),
+            ("x.npy.gz", Kind::Diagram),
+            ("-", Kind::Mesh),
+        ];
+        for (name, kind) in odd {
             let planned = Planned { path: Path::new(name), kind, format: None };
             assert_eq!(check(planned, &[], false).unwrap_err().exit_code(), 2, "{name}");
         }

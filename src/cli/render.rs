@@ -6,6 +6,7 @@ use clap::{Args, ValueEnum};
 use outsight::pipeline::{RenderRequest, Style, render_file};
 use serde::Serialize;
 
+use super::cache::CacheFlags;
 use super::console::Console;
 use super::estimate::Task;
 use super::failure::Failure;
@@ -45,6 +46,8 @@ pub struct Flags {
     no_legend: bool,
     #[command(flatten)]
     looking: LookingFlags,
+    #[command(flatten)]
+    cache: CacheFlags,
 }
 
 names! {
@@ -92,6 +95,7 @@ fn request(flags: &Flags, console: &Console) -> outsight::Result<RenderRequest> 
         colour_map: flags.colour_map.into(),
         legend: flags.legend || (style == Style::Heat && !flags.no_legend),
         measure: presets::measure_options(&flags.looking, &console.global)?,
+        cache: flags.cache.place()?,
         force: console.global.force,
     })
 }

@@ -9,6 +9,7 @@ use outsight::simplify::{SimplifyOptions, Target};
 use serde::Serialize;
 use serde_json::Value;
 
+use super::cache::{CacheFlags, reused};
 use super::collapsing::CollapseFlags;
 use super::console::Console;
 use super::estimate::Task;
@@ -52,6 +53,8 @@ pub struct Flags {
     looking: LookingFlags,
     #[command(flatten)]
     around: OccluderFlags,
+    #[command(flatten)]
+    cache: CacheFlags,
 }
 
 /// The library's report with what only the program knows.
@@ -104,6 +107,7 @@ fn request(flags: &Flags, console: &Console) -> outsight::Result<SimplifyRequest
         simplify: SimplifyOptions { max_error: flags.max_error, ..presets::simplify_options(&flags.collapse, preset)? },
         levels: levels(flags)?,
         format: flags.output_format.map(Into::into),
+        cache: flags.cache.place()?,
         force: console.global.force,
     })
 }
@@ -155,7 +159,7 @@ fn text(report: &SimplifyReport) -> String {
     let seconds = &report.seconds;
     format!(
         "{}error: largest distance of a collapse from {}, root mean square, in the units of the mesh\n\
-         {} triangles in, metric {}, {} ({} looking, {} making sure of what is hidden, {} simplifying)\n",
+         {} triangles in, metric {}, {} ({} looking, {} making sure of what is hidden{}, {} simplifying)\n",
         table(&["file", "triangles", "kept", "error", "stopped by"], &rows),
         if report.metric == "quadric" { "its surface" } else { "surface that can be seen, however little of it" },
         count(report.triangles),
@@ -163,6 +167,7 @@ fn text(report: &SimplifyReport) -> String {
         duration(seconds.total),
         duration(seconds.visibility),
         duration(seconds.hidden),
+        reused(report.cache),
         duration(seconds.simplify),
     )
 }

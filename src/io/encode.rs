@@ -21,21 +21,26 @@ pub struct WriteOptions {
     pub format: Option<Format>,
 }
 
-/// What is written beside the triangles of a mesh.
+/// What is written beside the geometry of a mesh.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct TriangleAttributes<'a> {
+pub struct Attributes<'a> {
     /// Visibility per triangle (PLY property `visibility`, 32-bit).
     pub visibility: Option<&'a [f64]>,
     /// Colour per triangle (PLY properties `red`, `green`, `blue`).
     pub colours: Option<&'a [[u8; 3]]>,
+    /// Visibility per vertex (PLY property `quality`, 32-bit, the name under which MeshLab shows it).
+    pub vertex_quality: Option<&'a [f64]>,
 }
 
-impl TriangleAttributes<'_> {
+impl Attributes<'_> {
     fn check(&self, mesh: &TriMesh, format: Format) -> Result<()> {
-        let expected = mesh.triangle_count();
-        let given =
-            [("visibility", self.visibility.map(<[f64]>::len)), ("colours", self.colours.map(<[[u8; 3]]>::len))];
-        for (what, got) in given {
+        let (triangles, vertices) = (mesh.triangle_count(), mesh.vertex_count());
+        let given = [
+            ("visibility", self.visibility.map(<[f64]>::len), triangles),
+            ("colours", self.colours.map(<[[u8; 3]]>::len), triangles),
+            ("quality", self.vertex_quality.map(<[f64]>::len), vertices),
+        ];
+        for (what, got, expected) in given {
             match got {
                 Some(got) if got != expected => return Err(Error::ShapeMismatch { what, got, expected }),
                 Some(_) if format != Format::Ply => {
@@ -59,7 +64,7 @@ impl TriangleAttributes<'_> {
 /// [`Error::Write`], [`Error::ClosedPipe`]; [`Error::Option`] where the path names no format, or the format cannot
 /// carry an attribute; [`Error::ShapeMismatch`] for attributes of another mesh; [`Error::Unavailable`] for `.zst`
 /// without the feature `zstd`.
-pub fn write(path: &Path, mesh: &TriMesh, attributes: &TriangleAttributes, options: &WriteOptions) -> Result<()> {
+pub fn write(path: &Path, mesh: &TriMesh, attributes: &Attributes, options: &WriteOptions) -> Result<()> {
     let format = format_to_write(path, options.format)?;
     attributes.check(mesh, format)?;
     if format == Format::Stl {
@@ -124,15 +129,18 @@ fn write_zstd(path: &Path, _force: bool, _write: impl FnOnce(&mut dyn Write) -> 
     Err(Error::Unavailable { message: format!("{path}: built without the `zstd` feature; write .gz instead") })
 }
 
-fn write_ply(output: &mut dyn Write, mesh: &TriMesh, attributes: &TriangleAttributes) -> io::Result<()> {
+fn write_ply(output: &mut dyn Write, mesh: &TriMesh, attributes: &Attributes) -> io::Result<()> {
     let is_exact_in_f32 = |p: &DVec3| p.to_array().iter().all(|&c| f64::from(c as f32).to_bits() == c.to_bits());
     let narrow = mesh.positions().iter().all(is_exact_in_f32);
     write_ply_header(output, mesh, narrow, attributes)?;
-    for p in mesh.positions() {
+    for (i, p) in mesh.positions().iter().enumerate() {
         if narrow {
             output.write_all(bytemuck::bytes_of(&p.as_vec3().to_array().map(|c| c.to_le_bytes())))?;
         } else {
             output.write_all(bytemuck::bytes_of(&p.to_array().map(f64::to_le_bytes)))?;
+        }
+        if let Some(quality) = attributes.vertex_quality {
+            output.write_all(&(quality[i] as f32).to_le_bytes())?;
         }
     }
     for (i, triangle) in mesh.triangles().iter().enumerate() {
@@ -148,18 +156,16 @@ fn write_ply(output: &mut dyn Write, mesh: &TriMesh, attributes: &TriangleAttrib
     Ok(())
 }
 
-fn write_ply_header(
-    output: &mut dyn Write,
-    mesh: &TriMesh,
-    narrow: bool,
-    attributes: &TriangleAttributes,
-) -> io::Result<()> {
+fn write_ply_header(output: &mut dyn Write, mesh: &TriMesh, narrow: bool, attributes: &Attributes) -> io::Result<()> {
     let real = if narrow { "float" } else { "double" };
     // A vertex number past 2³¹ would be negative as `int`, which is what all programs read.
     let index = if mesh.vertex_count() <= i32::MAX as usize { "int" } else { "uint" };
     writeln!(output, "ply\nformat binary_little_endian 1.0\ncomment written by Outsight")?;
     writeln!(output, "element vertex {}", mesh.vertex_count())?;
     writeln!(output, "property {real} x\nproperty {real} y\nproperty {real} z")?;
+    if attributes.vertex_quality.is_some() {
+        writeln!(output, "property float quality")?;
+    }
     writeln!(output, "element face {}\nproperty list uchar {index} vertex_indices", mesh.triangle_count())?;
     if attributes.visibility.is_some() {
         writeln!(output, "property float visibility")?;

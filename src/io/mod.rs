@@ -22,17 +22,19 @@ mod source;
 mod stl;
 mod table;
 mod text;
+mod vdg;
 
 use std::path::Path;
 
 pub use atomic::{check_target, write_atomic};
 pub use cameras::read_cameras;
-pub use encode::{TriangleAttributes, WriteOptions, write};
+pub use encode::{Attributes, WriteOptions, write};
 pub use format::Format;
 pub use table::{write_npy_f32, write_npy_f64, write_visibility_csv};
+pub use vdg::{Diagram, read_vdg, write_diagram_npy, write_vdg};
 
 use crate::error::{Error, Result};
-use crate::mesh::{SetAside, TriMesh};
+use crate::mesh::{SetAside, TriMesh, TriangleId};
 use fault::Fault;
 use format::FileName;
 use soup::Soup;
@@ -101,19 +103,23 @@ pub struct Loaded {
 }
 
 impl Loaded {
+    /// For each triangle of the *file* its number in the mesh; `None` for those that were set aside.
+    #[must_use]
+    pub fn file_order(&self) -> Vec<Option<TriangleId>> {
+        let mut aside = [&self.set_aside.repeated_vertex[..], &self.set_aside.zero_area[..]].concat();
+        aside.sort_unstable();
+        let total = self.mesh.triangle_count() + aside.len();
+        let (mut kept, mut aside) = (0.., aside.into_iter().peekable());
+        (0..total as u32)
+            .map(|t| if aside.next_if_eq(&t).is_some() { None } else { kept.next().map(TriangleId) })
+            .collect()
+    }
+
     /// Values of the mesh's triangles, one per triangle of the *file*: those that were set aside get `missing`.
     #[must_use]
     pub fn in_file_order(&self, values: &[f64], missing: f64) -> Vec<f64> {
-        let mut aside = [&self.set_aside.repeated_vertex[..], &self.set_aside.zero_area[..]].concat();
-        aside.sort_unstable();
-        let (mut values, mut aside) = (values.iter(), aside.into_iter().peekable());
-        let total = values.len() + aside.len();
-        (0..total as u32)
-            .map(|t| match aside.next_if_eq(&t) {
-                Some(_) => missing,
-                None => values.next().copied().unwrap_or(missing),
-            })
-            .collect()
+        let value = |id: Option<TriangleId>| id.and_then(|id| values.get(id.0 as usize)).copied();
+        self.file_order().into_iter().map(|id| value(id).unwrap_or(missing)).collect()
     }
 }
 

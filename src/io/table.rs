@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 /// As [`super::write_atomic`].
 pub fn write_npy_f64(path: &Path, values: &[f64], force: bool) -> Result<()> {
     write_encoded(path, force, |output| {
-        write_npy_header(output, "<f8", values.len())?;
+        write_npy_header(output, "<f8", &format!("({},)", values.len()))?;
         values.iter().try_for_each(|v| output.write_all(&v.to_le_bytes()))
     })
 }
@@ -23,20 +23,20 @@ pub fn write_npy_f64(path: &Path, values: &[f64], force: bool) -> Result<()> {
 /// As [`super::write_atomic`].
 pub fn write_npy_f32(path: &Path, values: &[f32], force: bool) -> Result<()> {
     write_encoded(path, force, |output| {
-        write_npy_header(output, "<f4", values.len())?;
+        write_npy_header(output, "<f4", &format!("({},)", values.len()))?;
         values.iter().try_for_each(|v| output.write_all(&v.to_le_bytes()))
     })
 }
 
 /// Magic, version, and a Python dictionary padded with blanks so that the numbers begin at a multiple of 64 bytes
 /// (NumPy Enhancement Proposal 1).
-fn write_npy_header(output: &mut dyn Write, kind: &str, len: usize) -> io::Result<()> {
+pub(super) fn write_npy_header(output: &mut dyn Write, kind: &str, shape: &str) -> io::Result<()> {
     const BEFORE: usize = 10;
-    let dictionary = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({len},), }}");
+    let dictionary = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
     let whole = (BEFORE + dictionary.len() + 1).next_multiple_of(64);
     let padded = whole - BEFORE - 1;
     output.write_all(b"\x93NUMPY\x01\x00")?;
-    // At most 64 bytes of text and 20 digits, so it fits.
+    // At most 64 bytes of text and 40 digits, so it fits.
     output.write_all(&((padded + 1) as u16).to_le_bytes())?;
     writeln!(output, "{dictionary:padded$}")
 }

@@ -3,11 +3,13 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::error::Result;
-use crate::io::{self, Loaded, ReadOptions, TriangleAttributes, WriteOptions};
+use crate::io::{self, Attributes, Loaded, ReadOptions, WriteOptions};
 use crate::mesh::TriMesh;
-use crate::pipeline::{Clock, Observer};
+use crate::pipeline::diagram::Record;
+use crate::pipeline::observation::{Observation, Surrounded};
+use crate::pipeline::{Clock, DiagramRequest, Observer};
 use crate::report::colour::ColourMap;
-use crate::visibility::{MeasureOptions, Rescue, StandardError, Subject, Visibility};
+use crate::visibility::{MeasureOptions, Rescue, StandardError, Visibility, per_vertex};
 
 /// What [`measure_file`] does.
 #[derive(Debug, Clone)]
@@ -22,8 +24,13 @@ pub struct MeasureRequest {
     pub occluders: Vec<PathBuf>,
     /// A mesh file (PLY carries visibility and heat colours), `.npy` or `.csv` to write.
     pub output: Option<PathBuf>,
+    /// Which camera sees which triangle, to be written too.
+    pub diagram: Option<DiagramRequest>,
     /// Heat colours in a PLY output.
     pub colour_map: ColourMap,
+    /// Where measurements are kept from run to run: a directory, or one file that ends in `.seen`. A run that writes a
+    /// diagram leaves it alone.
+    pub cache: Option<PathBuf>,
     /// Replace an output that is there.
     pub force: bool,
 }
@@ -59,6 +66,8 @@ pub struct MeasureReport {
     /// How often depth stood in for a pixel, under the estimator `item-buffer`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rescue: Option<RescueSummary>,
+    /// `hit` where an earlier run had kept the look, else `miss`; `None` without a cache.
+    pub cache: Option<&'static str>,
 }
 
 /// How exact a measurement is.
@@ -129,15 +138,23 @@ pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result
     let mut clock = Clock::start();
     request.measure.check()?;
     let occluders = read_occluders(&request.occluders, &request.read)?;
+    request.diagram.as_ref().map_or(Ok(()), |diagram| diagram.check(&request.measure))?;
     let loaded = io::read(&request.input, &request.read)?;
     observer.mesh_read(&request.input, &loaded)?;
     let read = clock.lap();
-    let subject = Subject::among(&loaded.mesh, &occluders, request.measure.backend)?;
+    // A cache keeps no diagram: who wants one must look.
+    let cache = request.cache.as_deref().filter(|_| request.diagram.is_none());
+    let scene = Surrounded { mesh: &loaded.mesh, occluders: &occluders };
+    let mut observation = Observation::of(scene, &request.measure, cache)?;
     let build = clock.lap();
-    let visibility = subject.measure(&request.measure, observer)?;
+    let (visibility, record) = look(&mut observation, request, observer)?;
     let looked = clock.lap();
+    observation.keep(&visibility, None)?;
     if let Some(output) = &request.output {
         write(output, &loaded, &visibility, request)?;
+    }
+    if let (Some(record), Some(diagram)) = (record, &request.diagram) {
+        record.write(&loaded, observation.subject()?, &diagram.output, request.force)?;
     }
     Ok(MeasureReport {
         triangles: loaded.mesh.triangle_count(),
@@ -147,6 +164,7 @@ pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result
         estimator: request.measure.estimator.name(),
         sides: request.measure.sides.name(),
         occluder_triangles: occluders.iter().map(TriMesh::triangle_count).sum(),
+        cache: observation.reused(),
         visibility: VisibilitySummary {
             mesh: visibility.of_mesh(),
             mesh_sides: visibility.of_mesh_sides(),
@@ -167,6 +185,21 @@ pub(super) fn read_occluders(paths: &[PathBuf], options: &ReadOptions) -> Result
     paths.iter().map(|path| Ok(io::read(path, &options)?.mesh)).collect()
 }
 
+fn look(
+    observation: &mut Observation<'_>,
+    request: &MeasureRequest,
+    observer: &dyn Observer,
+) -> Result<(Visibility, Option<Record>)> {
+    match &request.diagram {
+        None => Ok((observation.visibility(observer)?, None)),
+        Some(diagram) => {
+            let subject = observation.subject()?;
+            let (visibility, record) = Record::look(subject, &request.measure, diagram.fractions, observer)?;
+            Ok((visibility, Some(record)))
+        }
+    }
+}
+
 fn write(path: &Path, loaded: &Loaded, visibility: &Visibility, request: &MeasureRequest) -> Result<()> {
     let values = visibility.per_triangle();
     match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
@@ -178,7 +211,9 @@ fn write(path: &Path, loaded: &Loaded, visibility: &Visibility, request: &Measur
         }
         _ => {
             let colours: Vec<[u8; 3]> = values.iter().map(|&v| request.colour_map.colour(v)).collect();
-            let attributes = TriangleAttributes { visibility: Some(values), colours: Some(&colours) };
+            let quality = per_vertex(&loaded.mesh, values);
+            let attributes =
+                Attributes { visibility: Some(values), colours: Some(&colours), vertex_quality: Some(&quality) };
             io::write(path, &loaded.mesh, &attributes, &WriteOptions { force: request.force, format: None })
         }
     }

@@ -7,10 +7,11 @@ use crate::eval::{Gallery, Shot};
 use crate::io::{self, ReadOptions};
 use crate::mesh::TriMesh;
 use crate::pipeline::Observer;
+use crate::pipeline::observation::{Observation, Surrounded};
 use crate::report::colour::ColourMap;
 use crate::report::legend::with_legend;
 use crate::report::picture::Picture;
-use crate::visibility::{self, MeasureOptions};
+use crate::visibility::MeasureOptions;
 
 /// How a picture is coloured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -45,6 +46,8 @@ pub struct RenderRequest {
     pub legend: bool,
     /// How visibility is measured for heat colours.
     pub measure: MeasureOptions,
+    /// Where measurements are kept from run to run: a directory, or one file that ends in `.seen`.
+    pub cache: Option<PathBuf>,
     /// Replace a picture that is there.
     pub force: bool,
 }
@@ -80,7 +83,10 @@ fn flat(mesh: &TriMesh, shot: &Shot) -> Result<Picture> {
 
 /// Heat colours, darkened by half where the surface turns away, so that its shape shows.
 fn heat(mesh: &TriMesh, shot: &Shot, request: &RenderRequest, observer: &dyn Observer) -> Result<Picture> {
-    let visibility = visibility::measure(mesh, &request.measure, observer)?;
+    let mut observation =
+        Observation::of(Surrounded { mesh, occluders: &[] }, &request.measure, request.cache.as_deref())?;
+    let visibility = observation.visibility(observer)?;
+    observation.keep(&visibility, None)?;
     let picture = Gallery::new(mesh, mesh).coloured(shot, |hit, brightness| {
         let colour = request.colour_map.colour(visibility.per_triangle()[hit.triangle.0 as usize]);
         colour.map(|channel| f64::from(channel) * (0.5 + 0.5 * brightness))

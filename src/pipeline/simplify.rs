@@ -62,6 +62,8 @@ pub struct SimplifyRequest {
     pub levels: Vec<LevelRequest>,
     /// Format of the outputs, where their names do not say it.
     pub format: Option<Format>,
+    /// Where measurements are kept from run to run: a directory, or one file that ends in `.seen`.
+    pub cache: Option<PathBuf>,
     /// Replace outputs that are there.
     pub force: bool,
 }
@@ -168,6 +170,8 @@ pub struct SimplifyReport {
     pub seconds: SimplifySeconds,
     /// Hidden triangles that were removed before simplifying.
     pub hidden_deleted: usize,
+    /// What of the look an earlier run had kept: `hit`, `partial` (not what is hidden) or `miss`; `None` without a cache.
+    pub cache: Option<&'static str>,
 }
 
 /// One level of detail, as made.
@@ -225,6 +229,7 @@ impl SimplifyReport {
             metric: request.metric.name(),
             seconds,
             hidden_deleted: simplified.hidden_deleted,
+            cache: None,
         }
     }
 }

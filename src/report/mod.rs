@@ -6,6 +6,7 @@ mod font;
 
 pub mod colour;
 pub mod contact_sheet;
+pub mod diagram;
 pub mod legend;
 pub mod picture;
 pub mod plot;

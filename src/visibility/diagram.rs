@@ -46,6 +46,12 @@ impl VisibilityDiagram {
         &self.words[triangle.0 as usize * width..][..width]
     }
 
+    /// All rows, one behind the other.
+    #[must_use]
+    pub fn into_words(self) -> Vec<u64> {
+        self.words
+    }
+
     fn words_per_row(&self) -> usize {
         self.cameras.div_ceil(64)
     }
@@ -65,15 +71,20 @@ impl DiagramRecorder {
     /// [`Error::Limit`] if it does not fit `memory_limit` bytes.
     pub fn new(triangles: usize, cameras: usize, memory_limit: Option<u64>) -> Result<Self> {
         let bytes = VisibilityDiagram::bytes(triangles, cameras);
-        if memory_limit.is_some_and(|limit| bytes > limit) {
-            let message = format!(
+        let refused = || Error::Limit {
+            message: format!(
                 "the visibility diagram of {triangles} triangles and {cameras} cameras takes {} MiB; raise \
                  --memory-limit or take fewer cameras",
                 bytes.div_ceil(1 << 20)
-            );
-            return Err(Error::Limit { message });
+            ),
+        };
+        if memory_limit.is_some_and(|limit| bytes > limit) {
+            return Err(refused());
         }
-        let words = (0..bytes / 8).map(|_| AtomicU64::new(0)).collect();
+        let mut words = Vec::new();
+        let count = triangles * cameras.div_ceil(64);
+        words.try_reserve_exact(count).map_err(|_| refused())?;
+        words.resize_with(count, AtomicU64::default);
         Ok(Self { cameras, words })
     }
 

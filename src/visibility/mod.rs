@@ -8,11 +8,15 @@ mod convergence;
 mod coverage;
 mod diagram;
 mod estimate;
+mod explain;
+mod fractions;
 mod hemisphere;
 mod hidden;
 mod importance;
 mod item_buffer;
+mod kept;
 mod options;
+mod per_vertex;
 mod pieces;
 mod pool;
 mod ray_options;
@@ -25,10 +29,16 @@ mod surface;
 pub use convergence::{NestedVisibility, mean_difference, nested_visibility};
 pub use coverage::CoverageCounts;
 pub use diagram::{DiagramRecorder, VisibilityDiagram};
+pub use explain::{CameraSight, Explanation, Sight, explain};
+pub use fractions::visible_fractions;
 pub use importance::{Hidden, importance};
+pub use kept::{KeptFault, KeptMeasurement, MeasurementKey};
 pub use options::{DepthRescue, Estimator, MeasureOptions, Sides};
+pub use per_vertex::per_vertex;
 pub use ray_options::{MOST_SAMPLES, PartlySeen, RayOptions};
 pub use subject::Subject;
+
+use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
 use crate::mesh::TriMesh;
@@ -36,7 +46,7 @@ use crate::progress::Progress;
 use shapes::Shapes;
 
 /// The visibility of every triangle of a mesh.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Visibility {
     front: Vec<f64>,
     back: Vec<f64>,
@@ -50,7 +60,7 @@ pub struct Visibility {
 }
 
 /// What only some estimators can say.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Details {
     /// How exact the numbers are, from [`Estimator::Hemisphere`].
     pub standard_error: Option<StandardError>,
@@ -63,7 +73,7 @@ pub struct Details {
 }
 
 /// Standard error of a measurement: one standard deviation of what it would give if repeated.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StandardError {
     /// Of each triangle's V, front side.
     pub per_triangle: Vec<f64>,
@@ -78,7 +88,7 @@ pub struct StandardError {
 }
 
 /// Why [`Estimator::Hemisphere`] stopped casting rays.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SamplingEnd {
     /// They are what was asked for.
     AsAsked,
@@ -104,7 +114,7 @@ impl SamplingEnd {
 ///
 /// Counted are pairs of a piece of a triangle and a camera that faces a side of it which needs rescue: the front, and the
 /// back too unless [`Sides::One`] is in force.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Rescue {
     /// Pairs with a pixel.
     pub with_pixel: u64,

@@ -1,5 +1,5 @@
 use crate::backend::BackendKind;
-use crate::camera::{CameraWeights, Cameras};
+use crate::camera::{CameraSphere, CameraWeights, Cameras};
 use crate::error::{Error, Result};
 use crate::visibility::RayOptions;
 
@@ -164,6 +164,14 @@ impl MeasureOptions {
             let pixels = 480.0 * (triangles as f64 / TRIANGLES_AT_480).sqrt();
             (pixels.clamp(480.0, 4096.0).ceil() as u32).next_multiple_of(32)
         })
+    }
+
+    /// The cameras that look.
+    ///
+    /// # Errors
+    /// [`Error::Option`] for a number of cameras that no pattern has.
+    pub fn camera_sphere(&self) -> Result<CameraSphere> {
+        self.cameras.sphere(self.camera_weights)
     }
 
     /// Checks every option.

@@ -66,8 +66,7 @@ impl<'a> Subject<'a> {
     /// As [`super::measure`].
     pub fn measure(&self, options: &MeasureOptions, progress: &dyn Progress) -> Result<Visibility> {
         options.check()?;
-        let cameras = options.cameras.sphere(options.camera_weights)?;
-        self.measure_from(&cameras, options, None, progress)
+        self.measure_from(&options.camera_sphere()?, options, None, progress)
     }
 
     /// Looks from `cameras`, whatever `options` say about cameras, and writes down in `diagram` who sees what.
