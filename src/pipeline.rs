@@ -6,19 +6,23 @@
 //! mesh file → io → mesh → camera → backend → visibility → weights → simplify → io → mesh file
 //! ```
 //!
-//! [`measure_file`], [`compare_files`] and [`render_file`] leave it early or look at its two ends.
+//! [`measure_file`], [`verify_file`], [`compare_files`] and [`render_file`] leave it early or look at its two ends.
 
 mod compare;
+mod disagreement;
 mod measure;
 mod render;
 mod simplify;
+mod verify;
 
 pub use compare::{CompareReport, CompareRequest, GeometricReport, TestReport, compare_files};
+pub use disagreement::PairPictures;
 pub use measure::{MeasureReport, MeasureRequest, MeasureSeconds, VisibilitySummary, measure_file};
 pub use render::{RenderRequest, Style, render_file};
 pub use simplify::{
     LevelReport, LevelRequest, Metric, Simplified, SimplifyReport, SimplifyRequest, SimplifySeconds, simplify_seen,
 };
+pub use verify::{PairReport, VerifyReport, VerifyRequest, verify_file};
 
 use std::path::Path;
 use std::time::Instant;

@@ -33,6 +33,16 @@ Examples:
   outsight measure part.ply -o v.npy --json   one number per triangle for NumPy, and a summary
   outsight measure part.ply --preset paper    as Zhang & Turk 2002 did";
 
+/// Behind `outsight verify --help`.
+pub const VERIFY: &str = "\
+A backend alone counts coverage; an estimator alone runs on its usual backend. Ends with code 1 if a
+pair does not keep its limits; pairs that measure different things have none.
+
+Examples:
+  outsight verify part.ply                                   raster against embree and hemisphere
+  outsight verify part.ply --backends raster,embree -o differences
+  outsight verify part.ply --backends embree,surface@embree,item-buffer --json | jq .pairs";
+
 /// What clap would write over two lines.
 pub const SIMPLIFY_USAGE: &str =
     "outsight simplify [OPTIONS] <MESH> -o <FILE> <-t <N>|-r <RATIO>|-e <ERROR>|--lods <LIST>>";

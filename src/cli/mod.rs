@@ -28,6 +28,7 @@ mod simplify;
 mod system;
 mod text;
 mod values;
+mod verify;
 mod watch;
 
 use std::process::ExitCode;
@@ -60,6 +61,9 @@ enum Command {
     /// Measure how well each triangle is seen from outside
     #[command(after_help = help::MEASURE)]
     Measure(measure::Flags),
+    /// Put the same question to several backends and estimators: do they agree?
+    #[command(after_help = help::VERIFY, mut_arg("backend", |a| a.hide(true)), mut_arg("estimator", |a| a.hide(true)))]
+    Verify(verify::Flags),
     /// Reduce the triangles of a mesh, first where nobody looks
     #[command(after_help = help::SIMPLIFY, override_usage = help::SIMPLIFY_USAGE)]
     Simplify(simplify::Flags),
@@ -127,6 +131,7 @@ fn dispatch(command: &Command, console: &Console) -> Result<(), Failure> {
         Command::Demo(flags) => demo::run(flags, console),
         Command::Info(flags) => info::run(flags, console),
         Command::Measure(flags) => measure::run(flags, console),
+        Command::Verify(flags) => verify::run(flags, console),
         Command::Simplify(flags) => simplify::run(flags, console),
         Command::Compare(flags) => compare::run(flags, console),
         Command::Render(flags) => render::run(flags, console),

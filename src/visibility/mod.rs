@@ -4,6 +4,7 @@
 //! `coverage` replaces their F(t, v), seen or not, by the share of the triangle's image that is seen; the cosines of
 //! eq. (4.3) then cancel, and counting pixels is enough.
 
+pub mod agreement;
 mod coverage;
 mod diagram;
 mod estimate;
@@ -11,6 +12,7 @@ mod hidden;
 mod importance;
 mod options;
 mod pool;
+mod setting;
 mod shapes;
 mod subject;
 
@@ -18,6 +20,7 @@ pub use coverage::CoverageCounts;
 pub use diagram::{DiagramRecorder, VisibilityDiagram};
 pub use importance::{Hidden, importance};
 pub use options::{Estimator, MeasureOptions, Sides};
+pub use setting::Setting;
 pub use subject::Subject;
 
 use crate::error::Result;
