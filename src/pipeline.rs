@@ -6,21 +6,24 @@
 //! mesh file → io → mesh → camera → backend → visibility → weights → simplify → io → mesh file
 //! ```
 //!
-//! [`measure_file`], [`explain_file`], [`study_convergence`], [`compare_files`] and [`render_file`] leave it early or look
-//! at its two ends.
+//! [`measure_file`], [`explain_file`], [`verify_file`], [`study_convergence`], [`compare_files`] and [`render_file`] leave
+//! it early or look at its two ends.
 
 mod compare;
 mod convergence;
 mod diagram;
+mod disagreement;
 mod explain;
 mod measure;
 mod observation;
 mod render;
 mod simplify;
+mod verify;
 
 pub use compare::{CompareReport, CompareRequest, GeometricReport, TestReport, compare_files};
 pub use convergence::{ConvergenceError, ConvergenceReport, ConvergenceRequest, MeshConvergence, study_convergence};
 pub use diagram::DiagramRequest;
+pub use disagreement::PairPictures;
 pub use explain::{BlockerReport, ExplainReport, ExplainRequest, SightReport, explain_file};
 pub use measure::{
     ErrorSummary, MeasureReport, MeasureRequest, MeasureSeconds, RescueSummary, VisibilitySummary, measure_file,
@@ -30,6 +33,7 @@ pub use render::{RenderRequest, Style, render_file};
 pub use simplify::{
     LevelReport, LevelRequest, Metric, Simplified, SimplifyReport, SimplifyRequest, SimplifySeconds, simplify_seen,
 };
+pub use verify::{PairReport, VerifyReport, VerifyRequest, verify_file};
 
 use std::path::Path;
 use std::time::Instant;

@@ -1,6 +1,6 @@
 //! Estimates of memory and time, made before the work.
 
-use outsight::visibility::MeasureOptions;
+use outsight::visibility::{MeasureOptions, VisibilityDiagram};
 
 /// What a run does.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,6 +20,13 @@ pub enum Task {
         cameras: usize,
         /// Also the visible share of each triangle's image.
         fractions: bool,
+    },
+    /// Measures twice, keeping for each who sees what, and again what differs.
+    Verify {
+        /// Pixels along the side; 0 where not known before reading.
+        resolution: u32,
+        /// Cameras.
+        cameras: usize,
     },
     /// Measures and simplifies.
     Simplify {
@@ -45,6 +52,10 @@ const MEASURE_BYTES: u64 = 120;
 const STUDY_BYTES: u64 = 192;
 /// A triangle while it is simplified: quadrics, heap and rings of its share of vertices and edges.
 const SIMPLIFY_BYTES: u64 = 250;
+/// Who sees what by either measurement, and the pairs of several pixels and of contacts among what differs.
+const VERIFY_DIAGRAMS: u64 = 4;
+/// Two pictures at a time, and what they show spread out.
+const VERIFY_IMAGES: u64 = 4;
 /// A triangle while it is compared: the search tree and the samples.
 const COMPARE_BYTES: u64 = 200;
 /// A pixel of the two item buffers of an axis: near and far, triangle and depth each.
@@ -66,6 +77,10 @@ pub fn memory_bytes(task: Task, triangles: usize) -> u64 {
         }
         Task::Simplify { resolution } => SIMPLIFY_BYTES.max(MEASURE_BYTES) * triangles + images(resolution),
         Task::Study { resolution } => (MEASURE_BYTES + STUDY_BYTES) * triangles + images(resolution),
+        Task::Verify { resolution, cameras } => {
+            let diagrams = VERIFY_DIAGRAMS * VisibilityDiagram::bytes(triangles as usize, cameras);
+            diagrams + 2 * MEASURE_BYTES * triangles + VERIFY_IMAGES * images(resolution)
+        }
         Task::Compare => COMPARE_BYTES * triangles,
     };
     FLOOR_BYTES + READ_BYTES * triangles + working

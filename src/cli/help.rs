@@ -46,6 +46,16 @@ Examples:
   outsight explain part.ply 1234 --back --all all cameras, from the other side
   outsight explain part.ply 1234 --json | jq '.blockers[0]'";
 
+/// Behind `outsight verify --help`.
+pub const VERIFY: &str = "\
+A backend alone counts coverage; an estimator alone runs on its usual backend. Ends with code 1 if a
+pair does not keep its limits; pairs that measure different things have none.
+
+Examples:
+  outsight verify part.ply                                   raster against embree and hemisphere
+  outsight verify part.ply --backends raster,embree -o differences
+  outsight verify part.ply --backends embree,surface@embree,item-buffer --json | jq .pairs";
+
 /// What clap would write over two lines.
 pub const SIMPLIFY_USAGE: &str =
     "outsight simplify [OPTIONS] <MESH> -o <FILE> <-t <N>|-r <RATIO>|-e <ERROR>|--lods <LIST>>";

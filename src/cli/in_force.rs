@@ -44,6 +44,16 @@ fn camera_count(pattern: &CameraPattern) -> usize {
     }
 }
 
+/// Options of measuring that all settings of `verify` share.
+pub fn verify(options: &MeasureOptions) -> Value {
+    let mut common = measure(options);
+    if let Some(object) = common.as_object_mut() {
+        object.shift_remove("backend");
+        object.shift_remove("estimator");
+    }
+    common
+}
+
 /// Options of simplifying, and of measuring under `measure`.
 pub fn simplify(request: &SimplifyRequest) -> Value {
     let options = &request.simplify;

@@ -32,6 +32,7 @@ mod study;
 mod system;
 mod text;
 mod values;
+mod verify;
 mod watch;
 
 use std::process::ExitCode;
@@ -67,6 +68,9 @@ enum Command {
     /// Say which cameras see a triangle, and what hides it from the others
     #[command(after_help = help::EXPLAIN)]
     Explain(explain::Flags),
+    /// Put the same question to several backends and estimators: do they agree?
+    #[command(after_help = help::VERIFY, mut_arg("backend", |a| a.hide(true)), mut_arg("estimator", |a| a.hide(true)))]
+    Verify(verify::Flags),
     /// Reduce the triangles of a mesh, first where nobody looks
     #[command(after_help = help::SIMPLIFY, override_usage = help::SIMPLIFY_USAGE)]
     Simplify(simplify::Flags),
@@ -137,6 +141,7 @@ fn dispatch(command: &Command, console: &Console) -> Result<(), Failure> {
         Command::Info(flags) => info::run(flags, console),
         Command::Measure(flags) => measure::run(flags, console),
         Command::Explain(flags) => explain::run(flags, console),
+        Command::Verify(flags) => verify::run(flags, console),
         Command::Simplify(flags) => simplify::run(flags, console),
         Command::Compare(flags) => compare::run(flags, console),
         Command::Render(flags) => render::run(flags, console),

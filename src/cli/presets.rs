@@ -3,7 +3,7 @@
 use outsight::error::{Error, Result};
 use outsight::pipeline::Metric;
 use outsight::simplify::{PlaneWeight, SimplifyOptions, Topology};
-use outsight::visibility::{Estimator, Hidden, MeasureOptions, RayOptions};
+use outsight::visibility::{Estimator, Hidden, MeasureOptions, RayOptions, Setting};
 
 use super::collapsing::{CollapseFlags, MetricName, RefitName};
 use super::flags::{GlobalFlags, LookingFlags, Preset, RayFlags};
@@ -17,11 +17,28 @@ pub const VISIBILITY_POWER: f64 = 2.0;
 /// [`Error::Unavailable`] for a backend or an estimator that this version does not have, [`Error::Option`] for flags that
 /// do not go together; as [`super::cameras::CameraFlags::cameras`].
 pub fn measure_options(flags: &LookingFlags, global: &GlobalFlags) -> Result<MeasureOptions> {
+    let options = looking_options(flags, global)?;
+    options.check()?;
+    check_owners(flags, &[options.estimator])?;
+    Ok(options)
+}
+
+/// How visibility is measured under these flags by each of several settings; backend and estimator are each setting's own.
+///
+/// # Errors
+/// [`Error::Option`] for a flag of an estimator that no setting has; as [`super::cameras::CameraFlags::cameras`].
+pub fn verify_options(flags: &LookingFlags, global: &GlobalFlags, settings: &[Setting]) -> Result<MeasureOptions> {
+    let estimators: Vec<Estimator> = settings.iter().map(|setting| setting.estimator).collect();
+    check_owners(flags, &estimators)?;
+    looking_options(flags, global)
+}
+
+fn looking_options(flags: &LookingFlags, global: &GlobalFlags) -> Result<MeasureOptions> {
     let preset = match flags.preset {
         Preset::Best => MeasureOptions::default(),
         Preset::Paper => MeasureOptions::paper(),
     };
-    let options = MeasureOptions {
+    Ok(MeasureOptions {
         cameras: flags.cameras.cameras(preset.cameras)?,
         camera_weights: flags.camera_weights.map_or(preset.camera_weights, Into::into),
         resolution: flags.resolution.or(preset.resolution),
@@ -31,18 +48,21 @@ pub fn measure_options(flags: &LookingFlags, global: &GlobalFlags) -> Result<Mea
         rays: ray_options(&flags.rays, preset.rays, global.seed),
         rescue: flags.rescue.map_or(preset.rescue, Into::into),
         memory_limit: global.memory_limit,
-    };
-    options.check()?;
+    })
+}
+
+/// Refuses a flag that belongs to an estimator which does not look.
+fn check_owners(flags: &LookingFlags, estimators: &[Estimator]) -> Result<()> {
     let rescue = flags.rescue.is_some().then_some(("--rescue", Estimator::ItemBuffer));
-    match rescue.into_iter().chain(flags.rays.given()).find(|&(_, estimator)| estimator != options.estimator) {
-        None => Ok(options),
-        Some((name, estimator)) => {
-            let [of, not] = [estimator, options.estimator].map(Estimator::name);
-            let message =
-                format!("belongs to the estimator {of}, and {not} looks; add --estimator {of} or leave it out");
-            Err(Error::Option { name, message })
-        }
-    }
+    let strange = rescue.into_iter().chain(flags.rays.given()).find(|(_, owner)| !estimators.contains(owner));
+    let Some((name, owner)) = strange else { return Ok(()) };
+    let looking: Vec<&str> = estimators.iter().map(|estimator| estimator.name()).collect();
+    let message = format!(
+        "belongs to the estimator {}, and what looks is {}; ask for that estimator or leave the flag out",
+        owner.name(),
+        looking.join(", ")
+    );
+    Err(Error::Option { name, message })
 }
 
 fn ray_options(flags: &RayFlags, preset: RayOptions, seed: u64) -> RayOptions {

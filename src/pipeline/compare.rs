@@ -159,7 +159,7 @@ impl Sheet {
 }
 
 /// Three views for people: from the front right above, from the back left above, from below.
-fn views_around(up: DVec3) -> [DVec3; 3] {
+pub(super) fn views_around(up: DVec3) -> [DVec3; 3] {
     let up = up.normalize();
     let right = up.any_orthonormal_vector();
     let front = right.cross(up);

@@ -28,11 +28,20 @@ pub fn legend(map: ColourMap, title: &str, width: u32) -> Picture {
 /// `picture` on white with the legend of `map` under it.
 #[must_use]
 pub fn with_legend(picture: &Picture, map: ColourMap, title: &str) -> Picture {
-    let bar = legend(map, title, picture.width().min(480));
+    above(picture, &legend(map, title, picture.width().min(480)))
+}
+
+/// `picture` on white with a scale of its own under it: `colour` for places from 0 to 1, `ticks` at such places.
+#[must_use]
+pub fn with_scale(picture: &Picture, colour: impl Fn(f64) -> [u8; 3], ticks: &[(f64, String)], title: &str) -> Picture {
+    above(picture, &gradient(colour, ticks, title, picture.width().min(480)))
+}
+
+fn above(picture: &Picture, bar: &Picture) -> Picture {
     let width = picture.width().max(bar.width()) + 2 * MARGIN;
     let mut page = Picture::filled(width, picture.height() + bar.height() + 3 * MARGIN, WHITE);
     page.blit(picture, (width - picture.width()) / 2, MARGIN);
-    page.blit(&bar, (width - bar.width()) / 2, picture.height() + 2 * MARGIN);
+    page.blit(bar, (width - bar.width()) / 2, picture.height() + 2 * MARGIN);
     page
 }
 

@@ -4,6 +4,7 @@
 //! `coverage` replaces their F(t, v), seen or not, by the share of the triangle's image that is seen; the cosines of
 //! eq. (4.3) then cancel, and counting pixels is enough.
 
+pub mod agreement;
 mod convergence;
 mod coverage;
 mod diagram;
@@ -22,6 +23,7 @@ mod pool;
 mod ray_options;
 mod rays;
 mod rescue;
+mod setting;
 mod shapes;
 mod subject;
 mod surface;
@@ -36,6 +38,7 @@ pub use kept::{KeptFault, KeptMeasurement, MeasurementKey};
 pub use options::{DepthRescue, Estimator, MeasureOptions, Sides};
 pub use per_vertex::per_vertex;
 pub use ray_options::{MOST_SAMPLES, PartlySeen, RayOptions};
+pub use setting::Setting;
 pub use subject::Subject;
 
 use serde::{Deserialize, Serialize};
