@@ -4,7 +4,7 @@
 
 use glam::DMat3;
 use outsight::backend::BackendKind;
-use outsight::camera::{CameraSphere, CameraWeights};
+use outsight::camera::{CameraSphere, CameraWeights, Cameras};
 use outsight::mesh::{TriMesh, shapes};
 use outsight::progress::Silent;
 use outsight::visibility::agreement::{Agreement, Comparing, Limits, Measurement};
@@ -12,7 +12,8 @@ use outsight::visibility::{Estimator, MeasureOptions, Setting, Subject};
 
 /// Compares coverage by the raster with coverage by the judge, from cameras turned away from the walls.
 fn raster_against_judge(mesh: &TriMesh) -> (Agreement, Limits) {
-    let options = MeasureOptions { cameras: 66, resolution: Some(96), ..MeasureOptions::default() };
+    let options =
+        MeasureOptions { cameras: Cameras::octahedral(66), resolution: Some(96), ..MeasureOptions::default() };
     let turned = DMat3::from_rotation_z(0.3) * DMat3::from_rotation_x(0.7);
     let cameras = CameraSphere::octahedral(66, CameraWeights::Area).unwrap().rotated(turned);
     let comparing = Comparing { cameras: &cameras, options: &options, progress: &Silent };

@@ -171,7 +171,7 @@ mod tests {
         assert_eq!(fault(&MeasurementKey::of(&moved, &[], &options())), KeptFault::OtherMesh);
         let one_sided = MeasureOptions { sides: Sides::One, ..options() };
         assert_eq!(fault(&MeasurementKey::of(&mesh, &[], &one_sided)), KeptFault::OtherOptions);
-        assert_eq!(fault(&MeasurementKey::of(&mesh, &[mesh.clone()], &options())), KeptFault::OtherOptions);
+        assert_eq!(fault(&MeasurementKey::of(&mesh, std::slice::from_ref(&mesh), &options())), KeptFault::OtherOptions);
         let frugal = MeasureOptions { memory_limit: Some(1 << 40), ..options() };
         assert_eq!(MeasurementKey::of(&mesh, &[], &frugal), key, "memory changes no number");
         assert_eq!(KeptMeasurement::from_bytes(b"ply\n", &key), Err(KeptFault::Foreign));
