@@ -130,7 +130,7 @@ fn flags_of_rays_say_what_they_need() {
     let cases: [(&[&str], &str); 5] = [
         (&["--estimator", "surface"], "surface needs rays, which backend raster does not cast; add --backend embree"),
         (&["--estimator", "hemisphere", "--backend", "auto"], "add --backend embree"),
-        (&["--samples", "64"], "--samples: belongs to the estimator hemisphere, and coverage looks"),
+        (&["--samples", "64"], "--samples: belongs to the estimator hemisphere, and what looks is coverage"),
         (&["--points", "0"], "--points"),
         (&["--target-error", "2"], "write a standard error above 0 and below 1"),
     ];
