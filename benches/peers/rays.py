@@ -105,7 +105,7 @@ def ours(source):
 
     def run(cameras):
         report, seconds = outsight(
-            "measure", source, "--backend", "embree", "--estimator", "surface", "--samples", 1, "--sides", "one",
+            "measure", source, "--backend", "embree", "--estimator", "surface", "--points", 1, "--sides", "one",
             "--cameras", cameras, "--threads", THREADS,
         )
         return seconds, report["rays"]
