@@ -1,4 +1,4 @@
-//! Finds Embree 4 or 3, binds its header and links it.
+//! Finds Embree 4 or 3, binds its header, and says under which names the library is to be loaded.
 
 use std::env;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -58,8 +58,8 @@ fn find(places: &[(PathBuf, Vec<PathBuf>)]) -> Result<Found, String> {
             for library in libraries {
                 let files =
                     [format!("libembree{major}.so"), format!("libembree{major}.dylib"), format!("embree{major}.lib")];
-                if files.iter().any(|file| library.join(file).exists()) {
-                    return Ok(Found { major, include: include.clone(), library: library.clone() });
+                if let Some(file) = files.iter().map(|file| library.join(file)).find(|file| file.exists()) {
+                    return Ok(Found { major, include: include.clone(), library: file });
                 }
                 tried.extend(files.map(|file| library.join(file)));
             }
@@ -81,8 +81,10 @@ fn bind(found: &Found) -> Result<(), String> {
     if found.major == 4 {
         println!("cargo::rustc-cfg=embree4");
     }
-    println!("cargo::rustc-link-search=native={}", found.library.display());
-    println!("cargo::rustc-link-lib=dylib=embree{}", found.major);
+    // Where it was found, and by its name wherever the program will run.
+    let major = found.major;
+    let library = found.library.display();
+    println!("cargo::rustc-env=EMBREE_LIBRARIES={library};libembree{major}.so.{major};libembree{major}.so");
     let header = found.include.join(format!("embree{}/rtcore.h", found.major));
     let builder = bindgen::Builder::default()
         .header(header.display().to_string())
@@ -92,6 +94,9 @@ fn bind(found: &Found) -> Result<(), String> {
         .prepend_enum_name(false)
         .derive_default(true)
         .generate_comments(false)
+        .dynamic_library_name("Embree")
+        .dynamic_link_require_all(true)
+        .wrap_unsafe_ops(true)
         .rust_edition(bindgen::RustEdition::Edition2024)
         .layout_tests(true);
     // bindgen panics where it cannot load libclang, with the places where it looked.

@@ -4,10 +4,12 @@
 
 use glam::{DVec3, Vec3};
 use outsight::Error;
-use outsight::backend::{Brute, EmbreeScene, Occlusion, Ray};
+use outsight::backend::{BackendKind, Brute, EmbreeScene, Occlusion, Ray};
 use outsight::camera::{Frame, UnitMesh};
 use outsight::geom::OctahedralSphere;
 use outsight::mesh::{TriMesh, TriangleId, shapes};
+use outsight::progress::Silent;
+use outsight::visibility::{Estimator, MeasureOptions, measure};
 use proptest::prelude::*;
 
 fn unit(mesh: &TriMesh) -> UnitMesh {
@@ -119,4 +121,25 @@ fn a_scene_is_refused_where_the_library_would_read_past_its_buffers() {
     let mut wrong = good;
     wrong.positions[5][2] = f32::INFINITY;
     assert!(EmbreeScene::new(&wrong).unwrap_err().to_string().contains("vertex 5 is at"));
+}
+
+/// Of two triangles at one place the first is seen, as in pictures; the other, wound either way, is behind it.
+#[test]
+fn of_coincident_triangles_the_first_is_seen_by_rays_too() {
+    let corners = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]].map(Into::into).to_vec();
+    for second in [[0, 1, 2], [1, 2, 0], [0, 2, 1]] {
+        let mesh =
+            TriMesh::new([corners.clone(), corners.clone()].concat(), vec![[0, 1, 2], second.map(|v| v + 3)]).unwrap();
+        for backend in [BackendKind::Brute, BackendKind::Embree] {
+            for estimator in [Estimator::Surface, Estimator::Hemisphere] {
+                let options = MeasureOptions { backend, estimator, ..MeasureOptions::default() };
+                let seen = measure(&mesh, &options, &Silent).unwrap();
+                assert_eq!(
+                    (seen.front(), seen.back()),
+                    (&[1.0, 0.0][..], &[1.0, 0.0][..]),
+                    "{backend:?} {estimator:?}"
+                );
+            }
+        }
+    }
 }

@@ -13,6 +13,7 @@
 use std::f32::consts::PI;
 use std::os::raw::c_int;
 use std::ptr;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use cpu_time::ProcessTime;
@@ -45,6 +46,13 @@ enum Way {
     Packet8,
     Packet16,
     Single,
+}
+
+fn embree() -> &'static Embree {
+    static LOADED: OnceLock<Embree> = OnceLock::new();
+    // SAFETY: Embree may be loaded at any time; its initialisers have no preconditions.
+    let load = || LIBRARIES.split(';').find_map(|name| unsafe { Embree::new(name) }.ok());
+    LOADED.get_or_init(|| load().expect("the library that the build script found"))
 }
 
 fn main() {
@@ -84,21 +92,22 @@ impl Scene {
     fn new(positions: &[V], triangles: &[[u32; 3]], robust: bool, own: Own) -> Self {
         // SAFETY: Embree copies or owns everything here; the buffers made have room for what is copied into them.
         unsafe {
-            let device = rtcNewDevice(ptr::null());
-            let (scene, geometry) = (rtcNewScene(device), rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-            rtcSetSceneFlags(scene, if robust { RTC_SCENE_FLAG_ROBUST } else { RTC_SCENE_FLAG_NONE });
-            let make = |kind, format, count| rtcSetNewGeometryBuffer(geometry, kind, 0, format, 12, count);
+            let device = embree().rtcNewDevice(ptr::null());
+            let (scene, geometry) =
+                (embree().rtcNewScene(device), embree().rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
+            embree().rtcSetSceneFlags(scene, if robust { RTC_SCENE_FLAG_ROBUST } else { RTC_SCENE_FLAG_NONE });
+            let make = |kind, format, count| embree().rtcSetNewGeometryBuffer(geometry, kind, 0, format, 12, count);
             let to = make(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, positions.len());
             ptr::copy_nonoverlapping(positions.as_ptr(), to.cast(), positions.len());
             let to = make(RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles.len());
             ptr::copy_nonoverlapping(triangles.as_ptr(), to.cast(), triangles.len());
             if own == Own::Filter {
-                rtcSetGeometryOccludedFilterFunction(geometry, Some(reject_own));
+                embree().rtcSetGeometryOccludedFilterFunction(geometry, Some(reject_own));
             }
-            rtcCommitGeometry(geometry);
-            rtcAttachGeometry(scene, geometry);
-            rtcCommitScene(scene);
-            assert_eq!(rtcGetDeviceError(device), RTC_ERROR_NONE);
+            embree().rtcCommitGeometry(geometry);
+            embree().rtcAttachGeometry(scene, geometry);
+            embree().rtcCommitScene(scene);
+            assert_eq!(embree().rtcGetDeviceError(device), RTC_ERROR_NONE);
             Self(scene)
         }
     }
@@ -142,7 +151,7 @@ impl Scene {
                 }
                 let count = rays.len() as u32;
                 // SAFETY: the scene is committed, the context and `count` rays are live.
-                unsafe { rtcOccluded1M(self.0, &mut context, copy.as_mut_ptr(), count, size_of::<RTCRay>()) };
+                unsafe { embree().rtcOccluded1M(self.0, &mut context, copy.as_mut_ptr(), count, size_of::<RTCRay>()) };
                 blocked(&copy.map(|ray| ray.tfar)[..rays.len()])
             }
             Way::Single => {
@@ -151,12 +160,12 @@ impl Scene {
                     // SAFETY: as above.
                     #[cfg(not(embree4))]
                     unsafe {
-                        rtcOccluded1(self.0, &mut context, ray)
+                        embree().rtcOccluded1(self.0, &mut context, ray)
                     };
                     // SAFETY: as above; the arguments point to the live context.
                     #[cfg(embree4)]
                     unsafe {
-                        rtcOccluded1(self.0, ray, &mut arguments(&mut context))
+                        embree().rtcOccluded1(self.0, ray, &mut arguments(&mut context))
                     };
                 }
                 blocked(&copy.map(|ray| ray.tfar)[..rays.len()])
@@ -185,12 +194,12 @@ macro_rules! packet {
                 // SAFETY: the scene is committed; the packet, its mask and the context are live and aligned.
                 #[cfg(not(embree4))]
                 unsafe {
-                    $call(valid.0.as_ptr(), self.0, &mut context, &mut packet)
+                    embree().$call(valid.0.as_ptr(), self.0, &mut context, &mut packet)
                 };
                 // SAFETY: as above.
                 #[cfg(embree4)]
                 unsafe {
-                    $call(valid.0.as_ptr(), self.0, &mut packet, &mut arguments(&mut context))
+                    embree().$call(valid.0.as_ptr(), self.0, &mut packet, &mut arguments(&mut context))
                 };
                 blocked(&packet.tfar[..rays.len()])
             }

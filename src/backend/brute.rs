@@ -1,6 +1,7 @@
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
 
+use crate::backend::coincident::first_coincident;
 use crate::backend::{ItemBuffers, Occlusion, Ray};
 use crate::camera::{UnitMesh, View, Window};
 use crate::error::{Error, Result};
@@ -14,6 +15,8 @@ use crate::raster::{Hit, ItemBufferPair, Side, depth_step};
 #[derive(Debug)]
 pub struct Brute {
     triangles: Vec<([DVec3; 3], TriangleId)>,
+    /// For each the first that coincides with it.
+    first: Vec<u32>,
     extent: f64,
 }
 
@@ -23,7 +26,7 @@ impl Brute {
     pub fn new(mesh: &UnitMesh) -> Self {
         let position = |v: u32| DVec3::from_array(mesh.positions[v as usize].map(f64::from));
         let triangles = mesh.triangles.iter().map(|&(corners, id)| (corners.map(position), id)).collect();
-        Self { triangles, extent: mesh.extent }
+        Self { triangles, first: first_coincident(mesh), extent: mesh.extent }
     }
 }
 
@@ -57,8 +60,11 @@ impl Occlusion for Brute {
         }
         for (ray, answer) in rays.iter().zip(blocked) {
             let [origin, direction] = [ray.origin, ray.direction].map(|v| DVec3::from_array(v.map(f64::from)));
-            let others = self.triangles.iter().filter(|(_, id)| Some(*id) != ray.own);
-            *answer = others.into_iter().any(|&(corners, _)| crosses(origin, origin + direction, corners));
+            let own = ray.own.and_then(|own| self.triangles.iter().position(|&(_, id)| id == own));
+            let first = own.map(|own| self.first[own]);
+            let mut others = self.triangles.iter().zip(&self.first).filter(|&(_, f)| Some(*f) != first);
+            let is_second = own.is_some_and(|own| Some(own as u32) != first);
+            *answer = is_second || others.any(|(&(corners, _), _)| crosses(origin, origin + direction, corners));
         }
         Ok(())
     }

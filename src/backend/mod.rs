@@ -5,6 +5,7 @@
 //! the others with.
 
 mod brute;
+mod coincident;
 #[cfg(feature = "embree")]
 mod embree;
 mod machine;
@@ -62,7 +63,7 @@ impl BackendKind {
         match self {
             Self::Raster | Self::Brute => Ok(()),
             #[cfg(feature = "embree")]
-            Self::Embree => Ok(()),
+            Self::Embree => embree::check(),
             #[cfg(not(feature = "embree"))]
             Self::Embree => Err(Error::Unavailable {
                 message:

@@ -142,16 +142,13 @@ impl Errors {
         Self { of_mesh: Self::of_mean(hemisphere, tallies, samples), p99 }
     }
 
-    /// Of the mean over the surface; triangles have streams of their own, so that variances add up.
+    /// Of the mean over the surface; triangles have streams of their own, so that variances add up. A triangle whose rays
+    /// are all alike counts with its bound: a small hole in the sky of a large one is easily missed.
     fn of_mean(hemisphere: &Hemisphere<'_>, tallies: &[Tally], samples: u32) -> f64 {
         let areas = || hemisphere.caster.order().iter().map(|&t| hemisphere.shapes.areas[t as usize]);
         let total: f64 = areas().sum();
-        let variance: f64 = areas().zip(tallies).map(|(area, tally)| area * area * tally.variance(samples)).sum();
-        if variance > 0.0 {
-            return variance.sqrt() / total;
-        }
-        // No triangle tells. The bound is widest for a share that hides in the largest of them.
-        areas().fold(0.0, f64::max) / total * 3.0 / f64::from(samples)
+        let square = |(area, tally): (f64, &Tally)| (area * tally.standard_error(samples)).powi(2);
+        areas().zip(tallies).map(square).sum::<f64>().sqrt() / total
     }
 
     /// Why to stop here; `None` to go on.

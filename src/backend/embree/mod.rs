@@ -13,11 +13,20 @@ mod version;
 
 pub use grid::GridScratch;
 
+use crate::backend::coincident::first_coincident;
 use crate::backend::embree::device::Device;
 use crate::backend::embree::scene::CommittedScene;
 use crate::camera::UnitMesh;
 use crate::error::Result;
 use crate::mesh::TriangleId;
+
+/// Says whether the library is there.
+///
+/// # Errors
+/// [`Error::Unavailable`](crate::Error::Unavailable), with every file that was tried and what to install.
+pub(super) fn check() -> Result<()> {
+    device::library().map(drop)
+}
 
 /// A mesh laid out for ray casting.
 #[derive(Debug)]
@@ -25,9 +34,20 @@ pub struct EmbreeScene {
     scene: CommittedScene,
     /// By primitive: the triangle's number, and whether ordering its corners reversed the winding.
     primitives: Vec<(TriangleId, bool)>,
-    /// By triangle number: its primitive.
-    primitive_of: Vec<u32>,
+    /// By triangle number.
+    primitive_of: Vec<Primitive>,
     extent: f64,
+}
+
+/// A triangle's place in the scene.
+#[derive(Debug, Clone, Copy)]
+enum Primitive {
+    /// It is not there: degenerate, or no triangle of the mesh.
+    None,
+    /// It coincides with one of a smaller number, which hides it and stands for it.
+    Behind,
+    /// By this number.
+    Number(u32),
 }
 
 impl EmbreeScene {
@@ -39,13 +59,19 @@ impl EmbreeScene {
     /// [`Error::Backend`](crate::Error::Backend) as Embree says.
     pub fn new(mesh: &UnitMesh) -> Result<Self> {
         let slots = mesh.triangles.iter().map(|&(_, id)| id.0 as usize + 1).max().unwrap_or(0);
-        let mut primitive_of = vec![scene::Line::NO_NUMBER; slots];
+        let mut primitive_of = vec![Primitive::None; slots];
         let (mut triangles, mut primitives) = (Vec::new(), Vec::new());
-        for (primitive, &(corners, id)) in (0..).zip(&mesh.triangles) {
+        let first_coincident = first_coincident(mesh);
+        for ((index, &(corners, id)), first) in (0..).zip(&mesh.triangles).zip(first_coincident) {
+            if first != index {
+                // No ray may see it; in the scene it would only hide the first from its own rays.
+                primitive_of[id.0 as usize] = Primitive::Behind;
+                continue;
+            }
             let (ordered, reversed) = ordered_by_position(corners, &mesh.positions);
+            primitive_of[id.0 as usize] = Primitive::Number(triangles.len() as u32);
             triangles.push(ordered);
             primitives.push((id, reversed));
-            primitive_of[id.0 as usize] = primitive;
         }
         let scene = CommittedScene::new(mesh.positions.clone(), triangles)?;
         Ok(Self { scene, primitives, primitive_of, extent: mesh.extent })

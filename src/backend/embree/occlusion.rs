@@ -1,7 +1,7 @@
 //! Batches of rays: blocked or not.
 
-use crate::backend::embree::EmbreeScene;
 use crate::backend::embree::scene::Line;
+use crate::backend::embree::{EmbreeScene, Primitive};
 use crate::backend::{Occlusion, Ray};
 use crate::error::{Error, Result};
 use crate::mesh::TriangleId;
@@ -17,16 +17,27 @@ impl Occlusion for EmbreeScene {
                 message: format!("ray {wrong} has a coordinate that is not finite: {:?}", rays[wrong]),
             });
         }
-        self.scene.blocked(rays.iter().map(|ray| self.line(ray)), blocked)
+        self.scene.blocked(rays.iter().map(|ray| self.line(ray)), blocked)?;
+        for (ray, blocked) in rays.iter().zip(blocked) {
+            *blocked |= matches!(self.primitive(ray), Primitive::Behind);
+        }
+        Ok(())
     }
 }
 
 impl EmbreeScene {
     fn line(&self, ray: &Ray) -> Line {
-        // A triangle that is not in the scene blocks nothing, so nothing needs to be passed over.
-        let primitive = |id: TriangleId| self.primitive_of.get(id.0 as usize).copied();
-        let number = ray.own.and_then(primitive).unwrap_or(Line::NO_NUMBER);
+        let number = match self.primitive(ray) {
+            Primitive::Number(number) => number,
+            Primitive::None | Primitive::Behind => Line::NO_NUMBER,
+        };
         Line { origin: ray.origin, direction: ray.direction, number }
+    }
+
+    /// The triangle that a ray starts on.
+    fn primitive(&self, ray: &Ray) -> Primitive {
+        let primitive = |id: TriangleId| self.primitive_of.get(id.0 as usize).copied();
+        ray.own.and_then(primitive).unwrap_or(Primitive::None)
     }
 }
 

@@ -63,7 +63,7 @@ impl CommittedScene {
         positions.extend(PADDING);
         let device = Device::new()?;
         // SAFETY: the device is live.
-        let handle = unsafe { sys::rtcNewScene(device.handle()) };
+        let handle = unsafe { device.api().rtcNewScene(device.handle()) };
         device.check("making a scene")?;
         let scene = Self { handle, device, positions: positions.into(), triangles: triangles.into() };
         scene.build()?;
@@ -71,24 +71,26 @@ impl CommittedScene {
     }
 
     fn build(&self) -> Result<()> {
+        let api = self.device.api();
         // SAFETY: the scene is live and not committed yet.
-        unsafe { sys::rtcSetSceneFlags(self.handle, sys::RTC_SCENE_FLAG_ROBUST) };
+        unsafe { api.rtcSetSceneFlags(self.handle, sys::RTC_SCENE_FLAG_ROBUST) };
         // SAFETY: as above.
-        unsafe { sys::rtcSetSceneBuildQuality(self.handle, sys::RTC_BUILD_QUALITY_MEDIUM) };
+        unsafe { api.rtcSetSceneBuildQuality(self.handle, sys::RTC_BUILD_QUALITY_MEDIUM) };
         self.attach_triangles()?;
         // SAFETY: the scene is live and holds one committed geometry.
-        unsafe { sys::rtcCommitScene(self.handle) };
+        unsafe { api.rtcCommitScene(self.handle) };
         self.device.check("building a scene")
     }
 
     fn attach_triangles(&self) -> Result<()> {
+        let api = self.device.api();
         // SAFETY: the device is live.
-        let geometry = unsafe { sys::rtcNewGeometry(self.device.handle(), sys::RTC_GEOMETRY_TYPE_TRIANGLE) };
+        let geometry = unsafe { api.rtcNewGeometry(self.device.handle(), sys::RTC_GEOMETRY_TYPE_TRIANGLE) };
         self.device.check("making triangles")?;
         let vertices = self.positions.len() - PADDING.len();
         // SAFETY: the buffer holds `vertices` items and the padding behind them, and lives as long as the scene.
         unsafe {
-            sys::rtcSetSharedGeometryBuffer(
+            api.rtcSetSharedGeometryBuffer(
                 geometry,
                 sys::RTC_BUFFER_TYPE_VERTEX,
                 0,
@@ -101,7 +103,7 @@ impl CommittedScene {
         }
         // SAFETY: the buffer holds that many items, and lives as long as the scene.
         unsafe {
-            sys::rtcSetSharedGeometryBuffer(
+            api.rtcSetSharedGeometryBuffer(
                 geometry,
                 sys::RTC_BUFFER_TYPE_INDEX,
                 0,
@@ -113,15 +115,15 @@ impl CommittedScene {
             );
         }
         // SAFETY: the geometry is live; both filters keep to what the library says of filters.
-        unsafe { sys::rtcSetGeometryOccludedFilterFunction(geometry, Some(reject_own)) };
+        unsafe { api.rtcSetGeometryOccludedFilterFunction(geometry, Some(reject_own)) };
         // SAFETY: as above.
-        unsafe { sys::rtcSetGeometryIntersectFilterFunction(geometry, Some(note_and_reject)) };
+        unsafe { api.rtcSetGeometryIntersectFilterFunction(geometry, Some(note_and_reject)) };
         // SAFETY: the geometry is live and complete.
-        unsafe { sys::rtcCommitGeometry(geometry) };
+        unsafe { api.rtcCommitGeometry(geometry) };
         // SAFETY: scene and geometry are live; the scene takes a reference of its own.
-        unsafe { sys::rtcAttachGeometry(self.handle, geometry) };
+        unsafe { api.rtcAttachGeometry(self.handle, geometry) };
         // SAFETY: our reference is not used again.
-        unsafe { sys::rtcReleaseGeometry(geometry) };
+        unsafe { api.rtcReleaseGeometry(geometry) };
         self.device.check("handing over triangles")
     }
 
@@ -143,7 +145,7 @@ impl CommittedScene {
             let rays = &mut stream[..answers.len()];
             rays.iter_mut().zip(&mut lines).for_each(|(ray, line)| *ray = ray_along(line));
             // SAFETY: `handle` came from `rtcNewScene`, was committed in `new`, and is released only in `drop`.
-            unsafe { version::occluded(self.handle, rays) };
+            unsafe { version::occluded(self.device.api(), self.handle, rays) };
             answers.iter_mut().zip(rays).for_each(|(answer, ray)| *answer = ray.tfar < 0.0);
         }
         self.device.check("asking about rays")
@@ -165,7 +167,7 @@ impl CommittedScene {
         packet.rays.hit.geomID = [INVALID_ID; 8];
         let mut context = Context::new(Notes { crossings, out_of_memory: false });
         // SAFETY: `handle` came from `rtcNewScene`, was committed in `new`, and is released only in `drop`.
-        unsafe { version::intersect8(self.handle, &mut packet, &mut context) };
+        unsafe { version::intersect8(self.device.api(), self.handle, &mut packet, &mut context) };
         if context.extension.out_of_memory {
             return Err(Error::Limit { message: "no memory for the triangles behind a few pixels".to_owned() });
         }
@@ -176,7 +178,7 @@ impl CommittedScene {
 impl Drop for CommittedScene {
     fn drop(&mut self) {
         // SAFETY: the handle came from `rtcNewScene`; the device and both buffers are dropped after it.
-        unsafe { sys::rtcReleaseScene(self.handle) };
+        unsafe { self.device.api().rtcReleaseScene(self.handle) };
     }
 }
 

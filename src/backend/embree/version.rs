@@ -54,12 +54,17 @@ pub(super) struct Lanes(pub [c_int; 8]);
 ///
 /// # Safety
 /// `scene` is committed and live.
-pub(super) unsafe fn intersect8<T>(scene: sys::RTCScene, packet: &mut Packet, context: &mut Context<T>) {
+pub(super) unsafe fn intersect8<T>(
+    api: &sys::Embree,
+    scene: sys::RTCScene,
+    packet: &mut Packet,
+    context: &mut Context<T>,
+) {
     let valid = packet.valid.0.as_ptr();
     #[cfg(not(embree4))]
     // SAFETY: the scene by the caller's promise; mask, packet and context are live and aligned by their types.
     unsafe {
-        sys::rtcIntersect8(valid, scene, &raw mut context.query, &raw mut packet.rays);
+        api.rtcIntersect8(valid, scene, &raw mut context.query, &raw mut packet.rays);
     }
     #[cfg(embree4)]
     {
@@ -70,7 +75,7 @@ pub(super) unsafe fn intersect8<T>(scene: sys::RTCScene, packet: &mut Packet, co
             ..Default::default()
         };
         // SAFETY: as above; the arguments live as long as the call.
-        unsafe { sys::rtcIntersect8(valid, scene, &raw mut packet.rays, &raw mut arguments) };
+        unsafe { api.rtcIntersect8(valid, scene, &raw mut packet.rays, &raw mut arguments) };
     }
 }
 
@@ -81,11 +86,11 @@ pub(super) unsafe fn intersect8<T>(scene: sys::RTCScene, packet: &mut Packet, co
 /// # Safety
 /// `scene` is committed and live.
 #[cfg(not(embree4))]
-pub(super) unsafe fn occluded(scene: sys::RTCScene, rays: &mut [sys::RTCRay]) {
+pub(super) unsafe fn occluded(api: &sys::Embree, scene: sys::RTCScene, rays: &mut [sys::RTCRay]) {
     let mut context = Context::new(());
     let count = u32::try_from(rays.len()).expect("a batch is short");
     // SAFETY: the scene by the caller's promise; `rays` holds `count` rays one after the other, aligned by their type.
-    unsafe { sys::rtcOccluded1M(scene, &raw mut context.query, rays.as_mut_ptr(), count, size_of::<sys::RTCRay>()) };
+    unsafe { api.rtcOccluded1M(scene, &raw mut context.query, rays.as_mut_ptr(), count, size_of::<sys::RTCRay>()) };
 }
 
 /// Sets `tfar` of every ray that something blocks to −∞.
@@ -95,7 +100,7 @@ pub(super) unsafe fn occluded(scene: sys::RTCScene, rays: &mut [sys::RTCRay]) {
 /// # Safety
 /// `scene` is committed and live.
 #[cfg(embree4)]
-pub(super) unsafe fn occluded(scene: sys::RTCScene, rays: &mut [sys::RTCRay]) {
+pub(super) unsafe fn occluded(api: &sys::Embree, scene: sys::RTCScene, rays: &mut [sys::RTCRay]) {
     let mut context = Context::new(());
     let mut arguments = sys::RTCOccludedArguments {
         feature_mask: sys::RTC_FEATURE_FLAG_ALL,
@@ -105,7 +110,7 @@ pub(super) unsafe fn occluded(scene: sys::RTCScene, rays: &mut [sys::RTCRay]) {
     for eight in rays.chunks_mut(8) {
         let (valid, mut packet) = packed(eight);
         // SAFETY: the scene by the caller's promise; mask, packet and arguments are live and aligned by their types.
-        unsafe { sys::rtcOccluded8(valid.0.as_ptr(), scene, &raw mut packet, &raw mut arguments) };
+        unsafe { api.rtcOccluded8(valid.0.as_ptr(), scene, &raw mut packet, &raw mut arguments) };
         for (ray, tfar) in eight.iter_mut().zip(packet.tfar) {
             ray.tfar = tfar;
         }
