@@ -7,8 +7,8 @@
 mod common;
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
+use common::memory;
 use outsight::mesh::TriMesh;
 use outsight::progress::Silent;
 use outsight::simplify::{SimplifyOptions, Target, simplify};
@@ -40,7 +40,7 @@ fn main() {
             million / qb,
             million / vg,
             vg / qb,
-            memory_in_a_process_of_its_own(&path)
+            memory::in_a_process_of_its_own(MEMORY_OF, &path)
         );
     }
 }
@@ -50,26 +50,12 @@ fn to_five_percent(mesh: &TriMesh, importance: Option<&[f64]>) -> TriMesh {
     simplify(mesh, importance, &options, &Silent).unwrap().swap_remove(0).mesh
 }
 
-fn memory_in_a_process_of_its_own(path: &Path) -> String {
-    let program = std::env::current_exe().expect("a running program has a file");
-    let child = Command::new(program).env(MEMORY_OF, path).output().unwrap();
-    String::from_utf8_lossy(&child.stdout).trim().to_owned()
-}
-
 /// Peak above the memory that the process had with the mesh read and weights made, plus the mesh itself, per triangle.
 fn print_memory(path: &Path) {
     let mesh = common::load(path);
     let weights = vec![0.25; mesh.triangle_count()];
     let mesh_bytes = 12 * mesh.triangle_count() + 24 * mesh.vertex_count() + 8 * mesh.triangle_count();
-    // Reading peaked higher than what is held now; the system resets the peak on request.
-    let before = if std::fs::write("/proc/self/clear_refs", "5").is_ok() { kib("VmRSS:") } else { kib("VmHWM:") };
-    std::hint::black_box(to_five_percent(&mesh, Some(&weights)));
-    let peak = kib("VmHWM:").saturating_sub(before) * 1024;
+    let before = memory::resident();
+    let peak = memory::peak_of(|| to_five_percent(&mesh, Some(&weights))).saturating_sub(before);
     println!("{}", (peak as usize + mesh_bytes) / mesh.triangle_count());
-}
-
-fn kib(key: &str) -> u64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|line| line.strip_prefix(key)).unwrap_or_default();
-    line.split_whitespace().next().and_then(|n| n.parse().ok()).unwrap_or(0)
 }

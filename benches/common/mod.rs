@@ -1,6 +1,8 @@
-//! What the benches share: reading models, timing by processor time, medians.
+//! What the benches share: reading models, timing by processor time, medians, memory.
 
 #![allow(dead_code)]
+
+pub mod memory;
 
 use std::path::{Path, PathBuf};
 
@@ -34,17 +36,18 @@ pub fn name(path: &Path) -> String {
     file.split('.').next().unwrap_or_default().to_owned()
 }
 
-/// Median processor seconds of five runs, divided by the threads that shared the work.
+/// Processor seconds of a run, divided by the threads that share the work.
+pub fn seconds<T>(threads: usize, run: impl FnOnce() -> T) -> f64 {
+    let start = ProcessTime::now();
+    std::hint::black_box(run());
+    start.elapsed().as_secs_f64() / threads as f64
+}
+
+/// The median of [`seconds`] of five runs.
 pub fn median_seconds<T>(threads: usize, mut run: impl FnMut() -> T) -> f64 {
-    let mut seconds: Vec<f64> = (0..5)
-        .map(|_| {
-            let start = ProcessTime::now();
-            std::hint::black_box(run());
-            start.elapsed().as_secs_f64() / threads as f64
-        })
-        .collect();
-    seconds.sort_by(f64::total_cmp);
-    seconds[2]
+    let mut five: Vec<f64> = (0..5).map(|_| seconds(threads, &mut run)).collect();
+    five.sort_by(f64::total_cmp);
+    five[2]
 }
 
 /// The seven levels at which image errors are compared: shares of the triangles.

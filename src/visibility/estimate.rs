@@ -1,9 +1,12 @@
+use rayon::prelude::*;
+
 use crate::camera::CameraSphere;
 use crate::error::Result;
 use crate::progress::Progress;
+use crate::visibility::pool::Pools;
 use crate::visibility::{
     Details, DiagramRecorder, Estimator, MeasureOptions, Shapes, Subject, Visibility, coverage, hemisphere,
-    item_buffer, pool, surface,
+    item_buffer, surface,
 };
 
 /// Who looks how, for every estimator alike.
@@ -48,10 +51,14 @@ pub(super) fn estimate(subject: &Subject<'_>, looking: &Looking<'_>) -> Result<V
 fn finish(subject: &Subject<'_>, shapes: &Shapes, found: Estimate, looking: &Looking<'_>) -> Result<Visibility> {
     let Estimate { front, back, pooled_below, resolution, details } = found;
     let sides = looking.options.sides;
-    let pools = pool::pool_small(subject.mesh(), shapes, pooled_below, [&front, &back], looking.progress)?;
-    let value = |t: usize| sides.combine(pools.front(t, &front), pools.back(t, &back));
-    let per_triangle = (0..front.len()).map(|t| value(t).clamp(0.0, 1.0)).collect();
-    let seen = (0..front.len()).map(|t| pools.front(t, &front) > 0.0 || pools.back(t, &back) > 0.0).collect();
+    let pools = Pools::new(subject.mesh(), shapes, pooled_below);
+    let value_and_seen = |t: usize| {
+        // Far too small triangles need large neighbourhoods; someone may not want to wait for them.
+        let [front, back] = if looking.progress.is_cancelled() { [0.0; 2] } else { pools.at(t, [&front, &back]) };
+        (sides.combine(front, back).clamp(0.0, 1.0), front > 0.0 || back > 0.0)
+    };
+    let (per_triangle, seen) = (0..front.len()).into_par_iter().map(value_and_seen).unzip();
+    looking.progress.check()?;
     let raw_sides = |t: usize| sides.combine(front[t], back[t]);
     Ok(Visibility {
         of_mesh: shapes.area_mean(|t| front[t]),
