@@ -21,7 +21,9 @@ mod simplify;
 mod verify;
 
 pub use compare::{CompareReport, CompareRequest, GeometricReport, TestReport, compare_files};
-pub use convergence::{ConvergenceError, ConvergenceReport, ConvergenceRequest, MeshConvergence, study_convergence};
+pub use convergence::{
+    ConvergenceError, ConvergenceReport, ConvergenceRequest, IndependentReference, MeshConvergence, study_convergence,
+};
 pub use diagram::DiagramRequest;
 pub use disagreement::PairPictures;
 pub use explain::{BlockerReport, ExplainReport, ExplainRequest, SightReport, explain_file};

@@ -1,6 +1,6 @@
 //! Estimates of memory and time, made before the work.
 
-use outsight::visibility::{MeasureOptions, VisibilityDiagram};
+use outsight::visibility::{MeasureOptions, VisibilityDiagram, nested_resolution};
 
 /// What a run does.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,8 +35,8 @@ pub enum Task {
     },
     /// Measures from many patterns at once.
     Study {
-        /// Pixels along the side; 0 where not known before reading.
-        resolution: u32,
+        /// Pixels along the side; `None` where the study chooses them by the triangles.
+        resolution: Option<u32>,
     },
     /// Draws and compares meshes.
     Compare,
@@ -76,7 +76,10 @@ pub fn memory_bytes(task: Task, triangles: usize) -> u64 {
             (MEASURE_BYTES + row as u64) * triangles + images(resolution)
         }
         Task::Simplify { resolution } => SIMPLIFY_BYTES.max(MEASURE_BYTES) * triangles + images(resolution),
-        Task::Study { resolution } => (MEASURE_BYTES + STUDY_BYTES) * triangles + images(resolution),
+        Task::Study { resolution } => {
+            let resolution = resolution.unwrap_or_else(|| nested_resolution(triangles as usize));
+            (MEASURE_BYTES + STUDY_BYTES) * triangles + images(resolution)
+        }
         Task::Verify { resolution, cameras } => {
             let diagrams = VERIFY_DIAGRAMS * VisibilityDiagram::bytes(triangles as usize, cameras);
             diagrams + 2 * MEASURE_BYTES * triangles + VERIFY_IMAGES * images(resolution)

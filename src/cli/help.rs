@@ -96,10 +96,15 @@ Examples:
 /// Behind `outsight study convergence --help`.
 pub const STUDY_CONVERGENCE: &str = "\
 Compares visibility from 6 to 4098 octahedral cameras, counted alike and by the solid angle they
-own, with the most of them, and with 4096 cameras of another pattern.
+own, with the most of them, and with a reference that is found without these cameras: rays all over
+each triangle, or cameras of another pattern. Only that reference shows the error that equal weights
+keep however many cameras there are.
 
-Example:
-  outsight study convergence part.ply bunny.ply -o convergence/";
+Pixels bring an error of their own, largest on fine meshes: raise --resolution, and what falls was theirs.
+
+Examples:
+  outsight study convergence part.ply bunny.ply -o convergence/
+  outsight study convergence part.ply -o convergence/ --against fibonacci";
 
 /// Behind `outsight doctor --help`.
 pub const DOCTOR: &str = "\

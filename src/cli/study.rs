@@ -2,10 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, Subcommand};
+use clap::{Args, Subcommand, ValueEnum};
 use outsight::error::{Error, Result};
 use outsight::io;
-use outsight::pipeline::{ConvergenceReport, ConvergenceRequest, MeshConvergence, study_convergence};
+use outsight::pipeline::{
+    ConvergenceError, ConvergenceReport, ConvergenceRequest, IndependentReference, MeshConvergence, study_convergence,
+};
 use serde::Serialize;
 
 use super::console::Console;
@@ -41,9 +43,40 @@ struct ConvergenceFlags {
     /// Directory for convergence.json, .csv and .svg; made if it is not there
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
-    /// Pixels along each image's side, 16 to 16384 [default: by triangles]
+    /// The independent reference, which shares no error with the cameras under study
+    #[arg(long, value_name = "NAME", default_value = "hemisphere")]
+    against: Against,
+    /// hemisphere: rays from each triangle's front, 8 to 65536, taken up to a power of two [default: 4096]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(8..=65536))]
+    samples: Option<u32>,
+    /// Pixels along each image's side, 16 to 16384 [default: by triangles, 480 to 1920]
     #[arg(long, value_name = "W", value_parser = clap::value_parser!(u32).range(16..=16384))]
     resolution: Option<u32>,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Against {
+    /// Rays spread by the cosine, with a standard error; needs Embree
+    Hemisphere,
+    /// 4096 cameras on a spiral, in any build; has pixel noise of its own
+    Fibonacci,
+}
+
+/// Rays whose error is small beside that of 4098 cameras.
+const SAMPLES: u32 = 4096;
+
+impl ConvergenceFlags {
+    fn reference(&self) -> Result<IndependentReference> {
+        match (self.against, self.samples) {
+            (Against::Hemisphere, samples) => Ok(IndependentReference::Hemisphere(samples.unwrap_or(SAMPLES))),
+            (Against::Fibonacci, None) => Ok(IndependentReference::Fibonacci),
+            (Against::Fibonacci, Some(_)) => {
+                let message =
+                    "fibonacci looks from 4096 cameras and casts no rays; leave it out, or use --against hemisphere";
+                Err(Error::Option { name: "--samples", message: message.to_owned() })
+            }
+        }
+    }
 }
 
 /// The library's report with what only the program knows.
@@ -63,14 +96,17 @@ pub fn run(flags: &Flags, console: &Console) -> std::result::Result<(), Failure>
 
 fn convergence(flags: &ConvergenceFlags, console: &Console) -> std::result::Result<(), Failure> {
     let force = console.global.force;
+    let against = flags.reference()?;
+    against.check()?;
     let [json, csv, svg] = prepare(&flags.output, ["convergence.json", "convergence.csv", "convergence.svg"], force)?;
     let request = ConvergenceRequest {
         inputs: flags.meshes.clone(),
         read: flags.reading.options(&console.global),
+        against,
         resolution: flags.resolution,
         memory_limit: console.global.memory_limit,
     };
-    let task = Task::Study { resolution: flags.resolution.unwrap_or(0) };
+    let task = Task::Study { resolution: flags.resolution };
     let report = study_convergence(&request, &Watch::new(console, task))?;
     let object = Object { report: &report, peak_mb: peak_mib() };
     let text_of_json = console.to_json(&object)?;
@@ -94,29 +130,32 @@ fn text(report: &ConvergenceReport, directory: &Path) -> String {
     let tables: String = report.meshes.iter().map(table_of).collect();
     format!(
         "{tables}mean error of V over the surface, V from 0 to 1\n\
-         same pattern: against 4098 octahedral cameras of the same weights; independent: against {}\n\
+         same pattern: against 4098 octahedral cameras of the same weights\n\
+         independent: against {}\n\
          written  {}\n",
-        report.reference,
+        report.reference_in_words(),
         directory.join("convergence.{json,csv,svg}").display(),
     )
 }
 
 fn table_of(mesh: &MeshConvergence) -> String {
     let cell = |error: Option<f64>| error.map_or("-".to_owned(), |e| format!("{e:.5}"));
-    let row = |pair: &[outsight::pipeline::ConvergenceError]| {
+    let row = |pair: &[ConvergenceError]| {
         let mut cells = vec![pair[0].cameras.to_string()];
         cells.extend(pair.iter().map(|e| cell(e.against_4098)));
         cells.extend(pair.iter().map(|e| cell(Some(e.against_reference))));
         cells
     };
     let heads = ["cameras", "same pattern, equal", "same pattern, area", "independent, equal", "independent, area"];
+    // Errors come in pairs of the same cameras: equal weights, then area weights.
+    let rows: Vec<_> = mesh.errors.chunks_exact(2).map(row).collect();
+    let known = mesh.reference_error.map_or(String::new(), |e| format!("standard error of the reference: {e:.5}\n"));
     format!(
-        "{}: {} triangles, {} pixels square, {}\n{}\n",
+        "{}: {} triangles, {} pixels square, {}\n{}{known}\n",
         mesh.name(),
         count(mesh.triangles),
         mesh.resolution,
         duration(mesh.seconds),
-        // Errors come in pairs of the same cameras: equal weights, then area weights.
-        table(&heads, &mesh.errors.chunks_exact(2).map(row).collect::<Vec<_>>()),
+        table(&heads, &rows),
     )
 }

@@ -5,12 +5,16 @@ use serde::Serialize;
 
 use crate::backend::{BackendKind, Workload};
 use crate::camera::{CameraPattern, CameraWeights, Cameras, Window};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::io::{self, ReadOptions};
 use crate::mesh::TriMesh;
 use crate::pipeline::{Clock, Observer};
+use crate::progress::Progress;
 use crate::report::plot::{Curve, LogLogPlot, Mark, Panel};
-use crate::visibility::{MeasureOptions, NestedVisibility, Sides, Subject, mean_difference, nested_visibility};
+use crate::visibility::{
+    Estimator, MeasureOptions, NestedVisibility, RayOptions, Setting, Sides, Subject, Visibility, mean_difference,
+    nested_resolution, nested_visibility, surface_mean,
+};
 
 /// What [`study_convergence`] does.
 #[derive(Debug, Clone)]
@@ -19,17 +23,34 @@ pub struct ConvergenceRequest {
     pub inputs: Vec<PathBuf>,
     /// How they are read.
     pub read: ReadOptions,
-    /// Pixels along an image's side; `None` chooses by the number of triangles.
+    /// What the second comparison is with.
+    pub against: IndependentReference,
+    /// Pixels along an image's side; `None` takes [`nested_resolution`].
     pub resolution: Option<u32>,
     /// Bytes that the images of all threads together may take.
     pub memory_limit: Option<u64>,
 }
 
+/// Other means of finding V, which do not share what is wrong with the octahedral pattern.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum IndependentReference {
+    /// [`Estimator::Hemisphere`] with so many rays from a triangle's front, taken up to a power of two: no cameras, no
+    /// pixels, and a standard error. Needs Embree.
+    Hemisphere(u32),
+    /// [`SPIRAL`] cameras on a spiral, with pixels like those of the cameras under study: all that can be done without rays.
+    Fibonacci,
+}
+
+/// Cameras of [`IndependentReference::Fibonacci`]; their weights need no correction.
+const SPIRAL: usize = 4096;
+
 /// Result of [`study_convergence`].
 #[derive(Debug, Clone, Serialize)]
 pub struct ConvergenceReport {
-    /// What the second comparison is with.
+    /// Estimator and backend of the second comparison.
     pub reference: String,
+    /// Rays that it casts from a triangle's front; `None` where it looks from cameras on a spiral.
+    pub reference_samples: Option<u32>,
     /// One entry per mesh.
     pub meshes: Vec<MeshConvergence>,
 }
@@ -43,6 +64,8 @@ pub struct MeshConvergence {
     pub triangles: usize,
     /// Pixels along an image's side.
     pub resolution: u32,
+    /// Standard error of a triangle's V in the reference, mean over the surface: smaller errors do not show.
+    pub reference_error: Option<f64>,
     /// One entry per pattern and weights, ascending by cameras.
     pub errors: Vec<ConvergenceError>,
     /// Wall time of the looking.
@@ -58,23 +81,64 @@ pub struct ConvergenceError {
     pub weights: &'static str,
     /// Against 4098 cameras of the same pattern and weights; `None` for these themselves.
     pub against_4098: Option<f64>,
-    /// Against cameras of another pattern.
+    /// Against the independent reference.
     pub against_reference: f64,
 }
 
-/// Cameras of the independent reference: another pattern, of weights that need no correction.
-const REFERENCE: usize = 4096;
+impl IndependentReference {
+    /// Says whether this build has it.
+    ///
+    /// # Errors
+    /// [`Error::Unavailable`], naming the other.
+    pub fn check(self) -> Result<()> {
+        self.setting().backend.check().map_err(|_| Error::Unavailable {
+            message:
+                "the reference hemisphere casts rays, and this program was built without the feature `embree`; install \
+                      Embree (Debian, Ubuntu: apt-get install libembree-dev libclang-dev) and build with \
+                      `--features embree`, or use --against fibonacci"
+                    .to_owned(),
+        })
+    }
 
-/// Compares V from 6 to 4098 octahedral cameras with V from the most of them, and with V from other cameras.
+    fn setting(self) -> Setting {
+        match self {
+            Self::Hemisphere(_) => Setting { estimator: Estimator::Hemisphere, backend: BackendKind::Embree },
+            Self::Fibonacci => Setting { estimator: Estimator::Coverage, backend: BackendKind::Raster },
+        }
+    }
+
+    fn samples(self) -> Option<u32> {
+        match self {
+            Self::Hemisphere(samples) => Some(samples.next_power_of_two()),
+            Self::Fibonacci => None,
+        }
+    }
+
+    /// V of the fronts, by these means.
+    fn measure(self, mesh: &TriMesh, options: &MeasureOptions, progress: &dyn Progress) -> Result<Visibility> {
+        let mut options = self.setting().apply(options);
+        match self {
+            Self::Hemisphere(samples) => options.rays = RayOptions { samples, ..options.rays },
+            Self::Fibonacci => {
+                options.cameras = Cameras { pattern: CameraPattern::Fibonacci(SPIRAL), ..options.cameras };
+            }
+        }
+        Subject::new(mesh, options.backend)?.measure(&options, progress)
+    }
+}
+
+/// Compares V from 6 to 4098 octahedral cameras with V from the most of them, and with V found by other means.
 ///
 /// Zhang & Turk 2002, Fig. 3, compare with 4096 cameras of the same pattern. That cannot show what is wrong with the pattern
 /// itself: with equal weights its densest places count too much, however many cameras there are.
 ///
 /// # Errors
-/// As its steps.
+/// [`Error::Unavailable`] for a reference that this build does not have; as its steps.
 pub fn study_convergence(request: &ConvergenceRequest, observer: &dyn Observer) -> Result<ConvergenceReport> {
+    let against = request.against;
+    against.check()?;
     let meshes = request.inputs.iter().map(|path| study_one(path, request, observer)).collect::<Result<_>>()?;
-    Ok(ConvergenceReport { reference: format!("{REFERENCE} cameras on a spiral"), meshes })
+    Ok(ConvergenceReport { reference: against.setting().to_string(), reference_samples: against.samples(), meshes })
 }
 
 fn study_one(path: &Path, request: &ConvergenceRequest, observer: &dyn Observer) -> Result<MeshConvergence> {
@@ -82,37 +146,48 @@ fn study_one(path: &Path, request: &ConvergenceRequest, observer: &dyn Observer)
     observer.mesh_read(path, &loaded)?;
     let mesh: TriMesh = loaded.mesh;
     let mut clock = Clock::start();
+    let resolution = request.resolution.unwrap_or_else(|| nested_resolution(mesh.triangle_count()));
     let options = MeasureOptions {
-        cameras: Cameras { pattern: CameraPattern::Fibonacci(REFERENCE), ..Cameras::default() },
-        resolution: request.resolution,
+        resolution: Some(resolution),
         sides: Sides::One,
         memory_limit: request.memory_limit,
         ..MeasureOptions::default()
     };
+    let reference = request.against.measure(&mesh, &options, observer)?;
     let subject = Subject::new(&mesh, BackendKind::Raster)?;
-    let reference = subject.measure(&options, observer)?;
-    let window = Window::around_sphere(reference.resolution());
+    let window = Window::around_sphere(resolution);
     let load = Workload { window, memory_limit: request.memory_limit, phase: "convergence", progress: observer };
     let nested = nested_visibility(&subject, load)?;
-    let finest = |weights: CameraWeights| nested.iter().rev().find(|of_one| of_one.weights == weights);
-    let error = |of_one: &NestedVisibility| ConvergenceError {
+    let standard_error = reference.details().standard_error.as_ref();
+    Ok(MeshConvergence {
+        file: path.to_owned(),
+        triangles: mesh.triangle_count(),
+        resolution,
+        reference_error: standard_error.map(|error| surface_mean(&subject, |t| error.per_triangle[t])),
+        errors: nested.iter().map(|of_one| error_of(of_one, &nested, &reference, &subject)).collect(),
+        seconds: clock.lap(),
+    })
+}
+
+/// How far one of the nested patterns is off from the finest, and from the reference.
+fn error_of(
+    of_one: &NestedVisibility,
+    nested: &[NestedVisibility],
+    reference: &Visibility,
+    subject: &Subject<'_>,
+) -> ConvergenceError {
+    let finest = nested.iter().rev().find(|finest| finest.weights == of_one.weights);
+    ConvergenceError {
         cameras: of_one.cameras,
         weights: match of_one.weights {
             CameraWeights::Equal => "equal",
             CameraWeights::Area => "area",
         },
-        against_4098: finest(of_one.weights)
+        against_4098: finest
             .filter(|finest| finest.cameras != of_one.cameras)
-            .map(|finest| mean_difference(&subject, &of_one.front, &finest.front)),
-        against_reference: mean_difference(&subject, &of_one.front, reference.front()),
-    };
-    Ok(MeshConvergence {
-        file: path.to_owned(),
-        triangles: mesh.triangle_count(),
-        resolution: window.width,
-        errors: nested.iter().map(error).collect(),
-        seconds: clock.lap(),
-    })
+            .map(|finest| mean_difference(subject, &of_one.front, &finest.front)),
+        against_reference: mean_difference(subject, &of_one.front, reference.front()),
+    }
 }
 
 impl MeshConvergence {
@@ -131,20 +206,31 @@ impl MeshConvergence {
 }
 
 impl ConvergenceReport {
+    /// The reference in words.
+    #[must_use]
+    pub fn reference_in_words(&self) -> String {
+        match self.reference_samples {
+            Some(samples) => format!("{}, {samples} rays a triangle", self.reference),
+            None => format!("{}, {SPIRAL} cameras on a spiral", self.reference),
+        }
+    }
+
     /// Writes one row per mesh, number of cameras and weights; an error that there is not is empty.
     ///
     /// # Errors
     /// As `output`.
     pub fn write_csv(&self, output: &mut dyn Write) -> std_io::Result<()> {
-        writeln!(output, "file,triangles,resolution,cameras,weights,against_4098,against_reference")?;
+        let columns =
+            "file,triangles,resolution,reference,reference_error,cameras,weights,against_4098,against_reference";
+        writeln!(output, "{columns}")?;
         for mesh in &self.meshes {
             // A name with a comma or a quote is quoted, quotes doubled (RFC 4180).
             let file = format!("\"{}\"", mesh.name().replace('"', "\"\""));
+            let cell = |error: Option<f64>| error.map(|error| error.to_string()).unwrap_or_default();
+            let (triangles, resolution, known_to) = (mesh.triangles, mesh.resolution, cell(mesh.reference_error));
             for e in &mesh.errors {
-                let same = e.against_4098.map(|error| error.to_string()).unwrap_or_default();
-                let (triangles, resolution) = (mesh.triangles, mesh.resolution);
-                let row = format!("{},{},{same},{}", e.cameras, e.weights, e.against_reference);
-                writeln!(output, "{file},{triangles},{resolution},{row}")?;
+                let row = format!("{},{},{},{}", e.cameras, e.weights, cell(e.against_4098), e.against_reference);
+                writeln!(output, "{file},{triangles},{resolution},{},{known_to},{row}", self.reference)?;
             }
         }
         Ok(())
@@ -160,7 +246,7 @@ impl ConvergenceReport {
         LogLogPlot {
             panels: vec![
                 panel("against 4098 cameras of the same pattern".to_owned(), |e| e.against_4098),
-                panel(format!("against {}", self.reference), |e| Some(e.against_reference)),
+                panel(format!("against {}", self.reference_in_words()), |e| Some(e.against_reference)),
             ],
             x: "octahedral cameras".to_owned(),
             y: "mean error of V (from 0 to 1)".to_owned(),

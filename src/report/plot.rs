@@ -3,7 +3,7 @@
 use std::io;
 
 use plotters::coord::Shift;
-use plotters::coord::combinators::LogCoord;
+use plotters::coord::combinators::{LogCoord, WithKeyPoints};
 use plotters::prelude::*;
 
 /// Curves over logarithmic axes, in panels side by side that share their ranges.
@@ -62,7 +62,7 @@ const COLOURS: [RGBColor; 6] = [
 ];
 
 type Ranges = [(f64, f64); 2];
-type Chart<'a, B> = ChartContext<'a, B, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
+type Chart<'a, B> = ChartContext<'a, B, Cartesian2d<WithKeyPoints<LogCoord<f64>>, LogCoord<f64>>>;
 type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 
 impl LogLogPlot {
@@ -100,6 +100,15 @@ impl LogLogPlot {
         [x, (decade(f64::floor, y.0), decade(f64::ceil, y.1))]
     }
 
+    /// Every x that has a point: these are numbered, not round ones that nobody measured.
+    fn places(&self) -> Vec<f64> {
+        let curves = self.panels.iter().flat_map(|panel| panel.groups.iter().flatten());
+        let mut places: Vec<f64> = curves.flat_map(visible).map(|(x, _)| x).collect();
+        places.sort_unstable_by(f64::total_cmp);
+        places.dedup();
+        places
+    }
+
     fn draw_panel<B: DrawingBackend>(&self, panel: &Panel, area: &DrawingArea<B, Shift>, ranges: Ranges) -> Drawn<B> {
         let [x, y] = ranges;
         let mut chart = ChartBuilder::on(area)
@@ -107,7 +116,7 @@ impl LogLogPlot {
             .margin(14)
             .x_label_area_size(44)
             .y_label_area_size(70)
-            .build_cartesian_2d((x.0..x.1).log_scale(), (y.0..y.1).log_scale())?;
+            .build_cartesian_2d((x.0..x.1).log_scale().with_key_points(self.places()), (y.0..y.1).log_scale())?;
         chart
             .configure_mesh()
             .x_desc(&self.x)
@@ -139,7 +148,10 @@ impl LogLogPlot {
         chart
             .draw_series(DashedLineSeries::new([at(x.0), at(end)], 2, 4, grey.into()))?
             .label(format!("slope {}", self.slope))
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 20, y)], grey));
+            .legend(move |(x, y)| {
+                let dash = |from: i32| PathElement::new([(from, 0), (from + 4, 0)], grey);
+                EmptyElement::at((x, y)) + dash(0) + dash(8) + dash(16)
+            });
         Ok(())
     }
 }

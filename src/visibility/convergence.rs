@@ -61,7 +61,25 @@ pub fn nested_visibility(subject: &Subject<'_>, load: Workload<'_>) -> Result<Ve
 /// Mean over the surface of the difference between two visibilities: Σ A |a − b| / Σ A.
 #[must_use]
 pub fn mean_difference(subject: &Subject<'_>, a: &[f64], b: &[f64]) -> f64 {
-    Shapes::of(subject.mesh(), subject.frame()).area_mean(|t| (a[t] - b[t]).abs())
+    surface_mean(subject, |t| (a[t] - b[t]).abs())
+}
+
+/// Mean over the surface of a value of each triangle: Σ A x / Σ A.
+#[must_use]
+pub fn surface_mean(subject: &Subject<'_>, value: impl Fn(usize) -> f64) -> f64 {
+    Shapes::of(subject.mesh(), subject.frame()).area_mean(value)
+}
+
+/// Pixels of an image for each triangle, at which counting them costs V less than having 1026 cameras does: on a scan of
+/// 69,451 triangles 480 pixels along the side (3 a triangle) hid all that area weights gain, 1920 do not.
+const PIXELS_PER_TRIANGLE: f64 = 53.0;
+
+/// Pixels along an image's side at which [`nested_visibility`] of so many triangles shows its cameras rather than its
+/// pixels: 480 to 1920, in steps of 32. Beyond 69,000 triangles more of them would help, but the time is not worth it.
+#[must_use]
+pub fn nested_resolution(triangles: usize) -> u32 {
+    let pixels = (PIXELS_PER_TRIANGLE * triangles as f64).sqrt();
+    (pixels.clamp(480.0, 1920.0).ceil() as u32).next_multiple_of(32)
 }
 
 /// Weighted pixels of each triangle's front, one count per pattern.

@@ -28,7 +28,7 @@ mod shapes;
 mod subject;
 mod surface;
 
-pub use convergence::{NestedVisibility, mean_difference, nested_visibility};
+pub use convergence::{NestedVisibility, mean_difference, nested_resolution, nested_visibility, surface_mean};
 pub use coverage::CoverageCounts;
 pub use diagram::{DiagramRecorder, VisibilityDiagram};
 pub use explain::{CameraSight, Explanation, Sight, explain};
