@@ -77,13 +77,20 @@ impl Occlusion for Brute {
 /// Source: Shewchuk 1997, Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates.
 fn crosses(origin: DVec3, other: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
     let volume = |p, q, r| orient3d(coord(p), coord(q), coord(r), coord(origin));
-    let edges = [(b, c), (c, a), (a, b)].map(|(p, q)| volume(other, p, q));
-    if edges == [0.0; 3] {
+    let [first, second] = [volume(other, b, c), volume(other, c, a)];
+    if first * second < 0.0 {
+        // It passes between their sides: most triangles are done here.
+        return false;
+    }
+    let edges = [first, second, volume(other, a, b)];
+    let (left, right) = (edges.iter().all(|&e| e >= 0.0), edges.iter().all(|&e| e <= 0.0));
+    if left == right {
+        // It passes by, or lies in the plane.
         return false;
     }
     // How far the plane lies ahead, times how steeply the ray crosses it.
     let ahead = volume(a, b, c);
-    (ahead >= 0.0 && edges.iter().all(|&e| e >= 0.0)) || (ahead <= 0.0 && edges.iter().all(|&e| e <= 0.0))
+    if left { ahead >= 0.0 } else { ahead <= 0.0 }
 }
 
 fn coord(p: DVec3) -> Coord3D<f64> {

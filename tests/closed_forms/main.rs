@@ -18,7 +18,7 @@ use outsight::geom::triangle_area;
 use outsight::mesh::shapes::{self, Tagged};
 use outsight::mesh::{TriMesh, TriangleId};
 use outsight::progress::Silent;
-use outsight::visibility::{CoverageCounts, Sides, Subject};
+use outsight::visibility::{CoverageCounts, DepthRescue, Sides, Subject};
 
 use pair::Pair;
 
@@ -60,10 +60,10 @@ macro_rules! suite {
     })+ };
 }
 
-suite!(coverage_on_raster, surface_on_brute, hemisphere_on_brute);
+suite!(coverage_on_raster, item_buffer_on_raster, surface_on_brute, hemisphere_on_brute);
 
 #[cfg(feature = "embree")]
-suite!(surface_on_embree, hemisphere_on_embree);
+suite!(coverage_on_embree, surface_on_embree, hemisphere_on_embree);
 
 /// What a smooth shape's answer may differ from its mesh's, where that has less area.
 fn polygonal(mesh_area: f64, smooth_area: f64) -> f64 {
@@ -79,10 +79,13 @@ fn area(mesh: &TriMesh) -> f64 {
 fn check_mesh(pair: &Pair, mesh: &TriMesh, expected: f64, polygonal: f64) {
     let visibility = pair.look(mesh);
     let error = visibility.details().standard_error.as_ref().map_or(0.0, |error| error.of_mesh);
-    assert_abs_diff_eq!(visibility.of_mesh(), expected, epsilon = pair.mean + 4.0 * error + polygonal);
+    let tolerance = pair.mean + 4.0 * error + pair.half_seen(mesh, area(mesh)) + polygonal;
+    assert_abs_diff_eq!(visibility.of_mesh(), expected, epsilon = tolerance);
 }
 
 fn convex_solids(pair: &Pair) {
+    // The strict rule loses slivers beside sharp edges.
+    let pair = &pair.rescuing(DepthRescue::Plain);
     let [segments, rings] = pair.round([96, 48]);
     let solids = [
         shapes::icosphere(pair.level(5)),
@@ -94,11 +97,14 @@ fn convex_solids(pair: &Pair) {
         let visibility = pair.look(&solid);
         assert_abs_diff_eq!(visibility.of_mesh(), 1.0, epsilon = pair.certain);
         assert_eq!(visibility.never_seen(), 0);
-        assert!(visibility.back().iter().all(|&v| v == 0.0), "nobody sees a closed solid's back");
+        let back = visibility.back().iter().sum::<f64>() / visibility.back().len() as f64;
+        assert!(back <= pair.backs, "nobody sees a closed solid's back: {back}");
     }
 }
 
 fn all_cameras(pair: &Pair) {
+    // The strict rule loses slivers beside sharp edges.
+    let pair = &pair.rescuing(DepthRescue::Plain);
     let sphere = shapes::icosphere(pair.level(4));
     for cameras in [6, 18, 66, 258, 1026] {
         for weights in [CameraWeights::Area, CameraWeights::Equal] {
@@ -121,6 +127,8 @@ fn all_scales(pair: &Pair) {
 }
 
 fn sealed_shells(pair: &Pair) {
+    // Clutter comes within three pixels of the walls, through which rescue reaches; it also finds backs on outlines.
+    let pair = &pair.rescuing(DepthRescue::None);
     for seed in 0..4 {
         let shape = shapes::cluttered_sealed_box(seed, pair.pieces(20), pair.cells(4));
         let visibility = pair.look_at(&shape.mesh, Sides::Better);
@@ -132,7 +140,8 @@ fn sealed_shells(pair: &Pair) {
 
 fn discs_and_squares(pair: &Pair) {
     let rim = pair.round([128, 16]);
-    for (gap, expected) in [(0.25, 0.220_696), (0.5, 0.390_388), (1.0, 0.618_034), (2.0, 0.828_427), (4.0, 0.944_272)] {
+    let gaps = [(0.25, 0.220_696), (0.5, 0.390_388), (1.0, 0.618_034), (2.0, 0.828_427), (4.0, 0.944_272)];
+    for (gap, expected) in pair.some(&gaps) {
         let discs = shapes::coaxial_discs(1.0, gap, rim);
         let polygonal = polygonal(discs.area("lower"), PI);
         let seen = pair.see(&discs);
@@ -149,14 +158,14 @@ fn wedges(pair: &Pair) {
     let seen = pair.see(&squares);
     seen.check("floor", 0.799_956, 0.0);
     seen.check("wall", 0.799_956, 0.0);
-    const LENGTH: f64 = 20.0;
+    let length = pair.length(20.0);
     for degrees in [30.0_f64, 60.0, 90.0, 120.0] {
         let angle = degrees.to_radians();
-        let wedge = shapes::wedge(angle, LENGTH, pair.round([16, 32]));
+        let wedge = shapes::wedge(angle, length, pair.round([16, 32]));
         let seen = pair.see(&wedge);
         // Infinite strips have sin(α/2); the open ends of finite ones let in at most their own area.
         let infinite = (0.5 * angle).sin();
-        let ends = angle.sin() / (2.0 * LENGTH);
+        let ends = angle.sin() / (2.0 * length);
         let (mean, tolerance) = (seen.mean_of_all(), seen.tolerance());
         assert!(mean > infinite - tolerance && mean < infinite + ends + tolerance, "{degrees}°: {mean}");
     }
@@ -172,7 +181,8 @@ fn bowls(pair: &Pair) {
         let front = seen.visibility.front();
         let squares = bowl.triangles("inside").map(|t| (front[t] - (1.0 - fraction)).powi(2));
         let rms = (squares.sum::<f64>() / bowl.triangles("inside").count() as f64).sqrt();
-        assert!(rms < pair.point_rms + polygonal, "fraction {fraction}: {rms}");
+        let tolerance = pair.point_rms + polygonal + pair.half_seen(&bowl.mesh, bowl.area("inside"));
+        assert!(rms < tolerance, "fraction {fraction}: {rms}");
     }
 }
 
@@ -200,12 +210,13 @@ fn shells_with_a_hole(pair: &Pair) {
 }
 
 fn wells(pair: &Pair) {
-    for (depth, bottom, wall) in [
+    let all = [
         (0.5, 0.609_612, 0.390_388),
         (1.0, 0.381_966, 0.309_017),
         (2.0, 0.171_573, 0.207_107),
         (4.0, 0.055_728, 0.118_034),
-    ] {
+    ];
+    for (depth, bottom, wall) in pair.some(&all) {
         let well = shapes::cylindrical_well(depth, pair.round([96, 24]));
         let polygonal = polygonal(well.area("bottom"), PI);
         let seen = pair.see(&well);
@@ -225,20 +236,20 @@ fn parallel_rectangles(x: f64, y: f64) -> f64 {
     2.0 / (PI * x * y) * (corners + sides - x * x.atan() - y * y.atan())
 }
 
-/// T9 is an endless slot, which no mesh is: a closed one of length 20 has an exact answer too, near the endless one's.
+/// T9 is an endless slot, which no mesh is: a long closed one has an exact answer too, near the endless one's.
 fn slots(pair: &Pair) {
-    const LENGTH: f64 = 20.0;
+    let length = pair.length(20.0);
     for (depth, endless) in [(1.0, 0.414_214), (2.0, 0.236_068)] {
-        let bottom = parallel_rectangles(1.0 / depth, LENGTH / depth);
-        assert!(bottom < endless && endless - bottom < 0.5 / LENGTH, "{bottom} is no finite slot's");
+        let bottom = parallel_rectangles(1.0 / depth, length / depth);
+        assert!(bottom < endless && endless - bottom < 0.5 / length, "{bottom} is no finite slot's");
         let cube = shapes::open_box(pair.cells(32));
-        let longer = DAffine3::from_scale(DVec3::new(1.0, LENGTH, depth));
+        let longer = DAffine3::from_scale(DVec3::new(1.0, length, depth));
         let mesh = shapes::transformed(&cube.mesh, &longer).unwrap();
-        let slot = Tagged { mesh, surfaces: cube.surfaces, opening_area: LENGTH };
+        let slot = Tagged { mesh, surfaces: cube.surfaces, opening_area: length };
         let seen = pair.see(&slot);
         seen.check("bottom", bottom, 0.0);
         // What the bottom does not get of the opening's light, the walls do (T11).
-        seen.check("walls", LENGTH * (1.0 - bottom) / slot.area("walls"), 0.0);
+        seen.check("walls", length * (1.0 - bottom) / slot.area("walls"), 0.0);
     }
 }
 
@@ -257,7 +268,10 @@ fn cluttered_cavities(pair: &Pair) {
         let shape = shapes::cluttered_open_box(seed, pair.pieces(count), pair.cells(8));
         let seen = pair.see(&shape);
         let relative = area(&shape.mesh) / shape.opening_area;
-        assert_abs_diff_eq!(relative * seen.mean_of_all(), 1.0, epsilon = relative * seen.tolerance());
+        // Each of `n` bodies of area Aᵢ casts a shadow with an edge of about 2 √Aᵢ, all together 2 √(n Σ Aᵢ) at most.
+        let bodies = ((pair.pieces(count) + 1) as f64).sqrt();
+        let tolerance = seen.tolerance() + (bodies - 1.0) * pair.half_seen(&shape.mesh, area(&shape.mesh));
+        assert_abs_diff_eq!(relative * seen.mean_of_all(), 1.0, epsilon = relative * tolerance);
     }
 }
 
@@ -285,19 +299,21 @@ fn balls_and_torus(pair: &Pair) {
     let ball = shapes::icosphere(pair.level(5));
     // Inscribed balls are smaller at the same distance, and hide less of each other.
     let polygonal = polygonal(area(&ball), 4.0 * PI);
-    for (distance, expected) in [(2.0, 0.924_413), (2.5, 0.955_881), (3.0, 0.970_410), (4.0, 0.983_844)] {
+    for (distance, expected) in pair.some(&[(2.0, 0.924_413), (2.5, 0.955_881), (3.0, 0.970_410), (4.0, 0.983_844)]) {
         let moved = DAffine3::from_translation(DVec3::new(0.6, 0.0, 0.8) * distance);
         let other = shapes::transformed(&ball, &moved).unwrap();
         check_mesh(pair, &shapes::merge(&[ball.clone(), other]).unwrap(), expected, polygonal);
     }
     let [segments, sides] = pair.round([128, 64]);
-    let torus = pair.look(&shapes::torus(1.0, 0.5, segments, sides)).of_mesh();
+    let ring = shapes::torus(1.0, 0.5, segments, sides);
+    let torus = pair.look(&ring).of_mesh();
     // The hull's area over the torus's.
-    assert!(torus < 0.977_465 + pair.mean, "{torus}");
+    assert!(torus < 0.977_465 + pair.mean + pair.half_seen(&ring, area(&ring)), "{torus}");
 }
 
 /// R² / (R² + r²) for nested spheres (T13), of which the inner is sealed (T2); a sheet alone has 1 on both sides (T14).
 fn spheres_and_sheet(pair: &Pair) {
+    let pair = &pair.rescuing(DepthRescue::Plain);
     let nested = shapes::nested_spheres(0.5, pair.level(5));
     let visibility = pair.look(&nested.mesh);
     assert_abs_diff_eq!(visibility.of_mesh(), 1.0 / 1.25, epsilon = pair.certain + 1e-12);
