@@ -28,7 +28,7 @@ pub struct UnitMesh {
     /// Vertex positions; those of the framed mesh itself lie in the unit ball.
     pub positions: Vec<[f32; 3]>,
     /// Triangles that can be seen, with their numbers in the mesh; degenerate ones are left out. Occluders have the
-    /// numbers behind the mesh's own, several triangles of one number each: see [`Frame::unit_copy_among`].
+    /// numbers behind the mesh's own, several triangles of one number each: see [`Frame::among`].
     pub triangles: Vec<([u32; 3], TriangleId)>,
     /// Largest distance of a vertex in use from the centre; 1 up to rounding for the framed mesh itself.
     pub extent: f64,

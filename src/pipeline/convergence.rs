@@ -37,7 +37,7 @@ pub enum IndependentReference {
     /// [`Estimator::Hemisphere`] with so many rays from a triangle's front, taken up to a power of two: no cameras, no
     /// pixels, and a standard error. Needs Embree.
     Hemisphere(u32),
-    /// [`SPIRAL`] cameras on a spiral, with pixels like those of the cameras under study: all that can be done without rays.
+    /// 4096 cameras on a spiral, with pixels like those of the cameras under study: all that can be done without rays.
     Fibonacci,
 }
 
