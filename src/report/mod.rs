@@ -11,4 +11,5 @@ pub mod legend;
 pub mod paper;
 pub mod picture;
 pub mod plot;
+pub mod rank;
 pub mod table;

@@ -1,5 +1,11 @@
 //! Plots as SVG.
 
+mod scatter;
+mod two_axes;
+
+pub use scatter::{NamedPoint, ScatterGroup, ScatterPlot};
+pub use two_axes::{MethodCurves, TwoAxisPlot};
+
 use std::io;
 
 use plotters::coord::Shift;
@@ -61,6 +67,12 @@ const COLOURS: [RGBColor; 6] = [
     RGBColor(230, 159, 0),
 ];
 
+/// Colours for two methods that are compared, and for more.
+const PAIR: [RGBColor; 4] = [COLOURS[1], COLOURS[0], COLOURS[2], COLOURS[3]];
+
+/// Lines at the numbers of an axis.
+const GRID: RGBColor = RGBColor(225, 225, 225);
+
 type Ranges = [(f64, f64); 2];
 type Chart<'a, B> = ChartContext<'a, B, Cartesian2d<WithKeyPoints<LogCoord<f64>>, LogCoord<f64>>>;
 type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
@@ -71,19 +83,12 @@ impl LogLogPlot {
     /// # Errors
     /// What the drawing library says.
     pub fn to_svg(&self) -> io::Result<String> {
-        let mut svg = String::new();
         let size = (PANEL.0 * self.panels.len().max(1) as u32, PANEL.1);
-        {
-            let root = SVGBackend::with_string(&mut svg, size).into_drawing_area();
-            root.fill(&WHITE).map_err(io::Error::other)?;
+        svg_of(size, |root| {
             let areas = root.split_evenly((1, self.panels.len().max(1)));
             let ranges = self.ranges();
-            for (panel, area) in self.panels.iter().zip(&areas) {
-                self.draw_panel(panel, area, ranges).map_err(io::Error::other)?;
-            }
-            root.present().map_err(io::Error::other)?;
-        }
-        Ok(svg)
+            self.panels.iter().zip(&areas).try_for_each(|(panel, area)| self.draw_panel(panel, area, ranges))
+        })
     }
 
     /// Ranges of x and y that hold all points.
@@ -154,6 +159,19 @@ impl LogLogPlot {
             });
         Ok(())
     }
+}
+
+/// What `draw` draws on white, which dark pages show too, as an SVG document of so many pixels.
+fn svg_of(
+    size: (u32, u32),
+    draw: impl for<'a> FnOnce(&DrawingArea<SVGBackend<'a>, Shift>) -> Drawn<SVGBackend<'a>>,
+) -> io::Result<String> {
+    let mut svg = String::new();
+    {
+        let root = SVGBackend::with_string(&mut svg, size).into_drawing_area();
+        root.fill(&WHITE).and_then(|()| draw(&root)).and_then(|()| root.present()).map_err(io::Error::other)?;
+    }
+    Ok(svg)
 }
 
 /// Points that a logarithmic axis can show.
