@@ -15,7 +15,7 @@ use serde::Serialize;
 
 /// What holds for every model of the paper, or for the paper itself.
 pub const NOTES: [&str; 3] = [
-    "the improvement of table 2 is the mean over seven levels, which are not named; ours are 1/2, 1/4, … 1/128 of the triangles",
+    "the improvement of table 2 is the mean over seven levels, and does not say which",
     "the caption of figure 3 says 4096 cameras; the sixth octahedral pattern has 4098",
     "the prose calls the error of eq. (5.8) a mean projected distance, but visibility enters squared",
 ];

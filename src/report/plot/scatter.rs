@@ -5,7 +5,7 @@ use std::io;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
-use super::{Drawn, GRID, PAIR, svg_of};
+use super::{Drawn, GRID, PAIR, plain, svg_of};
 use crate::report::rank::spearman;
 
 /// Points with names over linear axes, in one or several groups; the title tells each group's rank correlation.
@@ -67,6 +67,8 @@ impl ScatterPlot {
                 .configure_mesh()
                 .x_desc(&self.x)
                 .y_desc(&self.y)
+                .x_label_formatter(&|x| plain(*x))
+                .y_label_formatter(&|y| plain(*y))
                 .label_style(("sans-serif", 14))
                 .axis_desc_style(("sans-serif", 15))
                 .bold_line_style(GRID)
@@ -100,7 +102,7 @@ impl ScatterPlot {
         }
         chart
             .configure_series_labels()
-            .position(SeriesLabelPosition::LowerLeft)
+            .position(SeriesLabelPosition::UpperRight)
             .label_font(("sans-serif", 14))
             .background_style(WHITE.mix(0.85))
             .border_style(RGBColor(200, 200, 200))
