@@ -63,7 +63,12 @@ fn colour(diagram: &Diagram, normal: DVec3, triangle: usize, camera: usize) -> [
     }
     // Whichever side faces the camera is the one that it sees.
     let toward = Vec4::from_array(diagram.cameras[camera]).truncate().as_dvec3();
-    [0, (255.0 * toward.dot(normal).abs()).round() as u8, 0]
+    green(toward.dot(normal).abs())
+}
+
+/// Green, the brighter the more squarely a camera looks: the cosine of its direction and the normal.
+pub(super) fn green(cosine: f64) -> [u8; 3] {
+    [0, (255.0 * cosine).round() as u8, 0]
 }
 
 #[cfg(test)]

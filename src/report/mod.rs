@@ -8,6 +8,7 @@ pub mod colour;
 pub mod contact_sheet;
 pub mod diagram;
 pub mod legend;
+pub mod outline;
 pub mod paper;
 pub mod picture;
 pub mod plot;

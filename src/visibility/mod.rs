@@ -17,6 +17,7 @@ mod importance;
 mod item_buffer;
 mod kept;
 mod options;
+pub mod outline;
 mod per_vertex;
 mod pieces;
 mod pool;
