@@ -17,6 +17,7 @@ mod explain;
 mod measure;
 mod observation;
 mod render;
+mod side_by_side;
 mod simplify;
 mod verify;
 
@@ -32,6 +33,7 @@ pub use measure::{
 };
 pub use observation::cache_is_file;
 pub use render::{RenderRequest, Style, render_file};
+pub use side_by_side::{ColumnOrder, Portrait, SideBySide};
 pub use simplify::{
     LevelReport, LevelRequest, Metric, Simplified, SimplifyReport, SimplifyRequest, SimplifySeconds, simplify_seen,
 };

@@ -1,16 +1,16 @@
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use serde::Serialize;
 
 use crate::error::Result;
 use crate::eval::geometric::{GeometricOptions, SampleCount, geometric_error};
-use crate::eval::{Gallery, ImageError, Shot, image_errors};
+use crate::eval::{ImageError, image_errors};
 use crate::io::{self, ReadOptions};
 use crate::mesh::TriMesh;
 use crate::pipeline::Observer;
-use crate::raster::GreyImage;
-use crate::report::contact_sheet::{Column, ContactSheet, Images, mesh_caption};
+use crate::pipeline::side_by_side::{ColumnOrder, Portrait, SideBySide};
+use crate::report::picture::Picture;
 
 /// What [`compare_files`] does.
 #[derive(Debug, Clone)]
@@ -104,58 +104,27 @@ pub fn compare_files(request: &CompareRequest, observer: &dyn Observer) -> Resul
     Ok(CompareReport { tests: reports.collect::<Result<_>>()? })
 }
 
-/// Pixels along the side of a picture on the sheet.
-const PICTURE_WIDTH: u32 = 400;
-
 /// Pictures of the reference and of every test, with what differs in red.
 fn contact_sheet(
     reference: &TriMesh,
     tests: &[TriMesh],
     errors: &[ImageError],
     request: &CompareRequest,
-) -> Result<crate::report::picture::Picture> {
-    let up = DVec3::from_array(request.up);
-    let shots = views_around(up).map(|toward| Shot::fitting(reference, toward, up, PICTURE_WIDTH));
-    let original = Sheet::of(reference, reference, &shots)?;
-    let others: Vec<Sheet> = tests.iter().map(|test| Sheet::of(test, reference, &shots)).collect::<Result<_>>()?;
-    let name = |path: &PathBuf| path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
-    let mut columns = vec![Column {
-        heading: name(&request.reference),
-        caption: mesh_caption(reference.triangle_count(), None),
-        images: original.shown(),
-    }];
-    for (((path, mesh), error), pictures) in request.tests.iter().zip(tests).zip(errors).zip(&others) {
-        let (heading, caption) = (name(path), mesh_caption(mesh.triangle_count(), Some(error.image_rmse)));
-        columns.push(Column { heading, caption, images: pictures.shown() });
-        let (heading, caption) = ("difference".to_owned(), String::new());
-        columns.push(Column { heading, caption, images: original.difference(pictures) });
-    }
-    ContactSheet { image_size: [PICTURE_WIDTH; 2], columns, ..ContactSheet::default() }.draw()
-}
-
-/// The pictures of one mesh: over white to be looked at, over black, as the image error sees them, to be compared.
-struct Sheet {
-    white: Vec<GreyImage>,
-    black: Vec<GreyImage>,
-}
-
-impl Sheet {
-    fn of(mesh: &TriMesh, reference: &TriMesh, shots: &[Shot]) -> Result<Self> {
-        let gallery = Gallery::new(mesh, reference);
-        let over = |background: f64| -> Result<Vec<GreyImage>> {
-            shots.iter().map(|shot| gallery.picture(shot, background)).collect()
-        };
-        Ok(Self { white: over(255.0)?, black: over(0.0)? })
-    }
-
-    fn shown(&self) -> Images<'_> {
-        Images::Shaded(self.white.iter().map(|image| image.pixels.as_slice()).collect())
-    }
-
-    fn difference<'a>(&'a self, other: &'a Self) -> Images<'a> {
-        let pairs = self.black.iter().zip(&other.black);
-        Images::Difference(pairs.map(|(a, b)| [a.pixels.as_slice(), b.pixels.as_slice()]).collect())
-    }
+) -> Result<Picture> {
+    let portrait = |path: &Path, mesh, image_rmse| {
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+        Portrait { name, mesh, image_rmse }
+    };
+    let others = request.tests.iter().zip(tests).zip(errors);
+    let sheet = SideBySide {
+        title: String::new(),
+        subtitle: String::new(),
+        reference: portrait(&request.reference, reference, None),
+        tests: others.map(|((path, mesh), error)| portrait(path, mesh, Some(error.image_rmse))).collect(),
+        order: ColumnOrder::ReferenceFirst,
+        up: DVec3::from_array(request.up),
+    };
+    sheet.draw()
 }
 
 /// Three views for people: from the front right above, from the back left above, from below.
