@@ -141,6 +141,43 @@ fn flags_of_rays_say_what_they_need() {
     }
 }
 
+#[cfg(feature = "embree")]
+#[test]
+fn flags_that_the_estimator_cannot_use_are_refused_with_who_can() {
+    let home = directory();
+    fs::write(home.path().join("two.txt"), "1 0 0\n0 1 0\n").unwrap();
+    let hemisphere = ["--estimator", "hemisphere", "--backend", "embree"];
+    let surface = ["--estimator", "surface", "--backend", "embree"];
+    let ended = |command: &[&str], flags: &[&str]| run(home.path(), &[command, flags].concat());
+    for foreign in [
+        ["--cameras", "18"],
+        ["--camera-weights", "equal"],
+        ["--camera-file", "two.txt"],
+        ["--camera-pattern", "latlong"],
+        ["--camera-rotation", "3"],
+    ] {
+        let refused = ended(&["measure", "cube.off"], &[&hemisphere[..], &foreign].concat());
+        let message = format!(
+            "{}: belongs to the estimators coverage, item-buffer, surface, and what looks is hemisphere",
+            foreign[0]
+        );
+        assert_eq!((refused.code, refused.err.contains(&message)), (2, true), "{}", refused.err);
+        assert_eq!(ended(&["measure", "cube.off"], &[&surface[..], &foreign].concat()).code, 0, "{foreign:?}");
+        assert_eq!(ended(&["verify", "cube.off", "--backends", "hemisphere,surface"], &foreign).code, 0, "{foreign:?}");
+    }
+    for rays in [hemisphere, surface] {
+        let refused = ended(&["measure", "cube.off", "--resolution", "64"], &rays);
+        assert!(refused.err.contains("--resolution: belongs to the estimators coverage, item-buffer, and"));
+        assert_eq!(refused.code, 2);
+        // What is hidden is looked for in pictures.
+        let simplify = ["simplify", "cube.off", "-o", "x.ply", "-r", "0.5", "--force", "--resolution", "64"];
+        assert_eq!(ended(&simplify, &[&rays[..], &["--hidden", "delete"]].concat()).code, 0);
+        assert_eq!(ended(&simplify, &[&rays[..], &["--hidden", "keep"]].concat()).code, 2);
+    }
+    let half = json(home.path(), &[&["measure", "cube.off", "--json", "--hemisphere", "+y"], &hemisphere[..]].concat());
+    assert!((half["visibility"]["mesh"].as_f64().unwrap() - 0.5).abs() < 0.05, "the side means something to rays");
+}
+
 #[test]
 fn wrong_sizes_say_what_was_meant() {
     let home = directory();

@@ -206,6 +206,8 @@ fn explain_says_which_triangles_there_are() {
     let (code, message) = refused(&["1"]);
     assert_eq!((code, message.contains("repeats a vertex")), (3, true), "{message}");
     assert_eq!(refused(&["-1"]).0, 2);
-    let (code, message) = refused(&["0", "--estimator", "coverage"]);
-    assert_eq!((code, message.contains("leave it out")), (2, true), "{message}");
+    for unused in [["--estimator", "coverage"], ["--rescue", "plain"], ["--points", "3"], ["--samples", "64"]] {
+        let (code, message) = refused(&[&["0"][..], &unused].concat());
+        assert_eq!((code, message.contains("leave it out")), (2, true), "{message}");
+    }
 }

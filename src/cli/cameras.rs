@@ -43,6 +43,17 @@ enum PatternName {
 }
 
 impl CameraFlags {
+    /// The flags that were given, but for `--hemisphere`, which says something to whoever looks without cameras too.
+    pub fn without_side(&self) -> impl Iterator<Item = &'static str> {
+        let all = [
+            (self.cameras.is_some(), "--cameras"),
+            (self.camera_pattern.is_some(), "--camera-pattern"),
+            (self.camera_file.is_some(), "--camera-file"),
+            (self.camera_rotation.is_some(), "--camera-rotation"),
+        ];
+        all.into_iter().filter(|(given, _)| *given).map(|(_, name)| name)
+    }
+
     /// The cameras under these flags; those of `preset` where they say nothing.
     ///
     /// # Errors

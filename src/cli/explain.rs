@@ -65,10 +65,13 @@ fn check_looking(looking: &LookingFlags) -> outsight::Result<()> {
         ("--backend", looking.backend.is_some()),
         ("--estimator", looking.estimator.is_some()),
         ("--sides", looking.sides.is_some()),
+        ("--rescue", looking.rescue.is_some()),
     ];
-    match given.into_iter().find(|(_, given)| *given) {
+    let given = given.into_iter().filter(|(_, given)| *given).map(|(name, _)| name);
+    let rays = looking.rays.given().map(|(name, _)| name);
+    match given.chain(rays).next() {
         None => Ok(()),
-        Some((name, _)) => {
+        Some(name) => {
             let message = "explain casts rays of its own from one side of the triangle; leave it out".to_owned();
             Err(Error::Option { name, message })
         }

@@ -155,16 +155,43 @@ pub struct RayFlags {
 }
 
 impl RayFlags {
-    /// The flags that were given, each with the estimator that it belongs to.
-    pub fn given(&self) -> impl Iterator<Item = (&'static str, Estimator)> {
+    /// The flags that were given, each with the estimators that it belongs to.
+    pub fn given(&self) -> impl Iterator<Item = Owned> {
         let all = [
-            (self.points.is_some(), "--points", Estimator::Surface),
-            (self.partly_seen.is_some(), "--partly-seen", Estimator::Surface),
-            (self.samples.is_some(), "--samples", Estimator::Hemisphere),
-            (self.target_error.is_some(), "--target-error", Estimator::Hemisphere),
-            (self.target_error_p99.is_some(), "--target-error-p99", Estimator::Hemisphere),
+            (self.points.is_some(), "--points", SURFACE),
+            (self.partly_seen.is_some(), "--partly-seen", SURFACE),
+            (self.samples.is_some(), "--samples", HEMISPHERE),
+            (self.target_error.is_some(), "--target-error", HEMISPHERE),
+            (self.target_error_p99.is_some(), "--target-error-p99", HEMISPHERE),
         ];
-        all.into_iter().filter(|(given, ..)| *given).map(|(_, name, estimator)| (name, estimator))
+        only_given(all)
+    }
+}
+
+/// A flag, and the estimators that make anything of it.
+type Owned = (&'static str, &'static [Estimator]);
+
+const SURFACE: &[Estimator] = &[Estimator::Surface];
+const HEMISPHERE: &[Estimator] = &[Estimator::Hemisphere];
+/// They count pixels.
+const DRAWING: &[Estimator] = &[Estimator::Coverage, Estimator::ItemBuffer];
+/// They look from cameras; of [`Estimator::Hemisphere`] these only say on which side they stand.
+const WITH_CAMERAS: &[Estimator] = &[Estimator::Coverage, Estimator::ItemBuffer, Estimator::Surface];
+
+fn only_given<const N: usize>(flags: [(bool, &'static str, &'static [Estimator]); N]) -> impl Iterator<Item = Owned> {
+    flags.into_iter().filter(|(given, ..)| *given).map(|(_, name, owners)| (name, owners))
+}
+
+impl LookingFlags {
+    /// The flags that were given and that not every estimator uses.
+    pub fn owned(&self) -> impl Iterator<Item = Owned> {
+        let own = [
+            (self.camera_weights.is_some(), "--camera-weights", WITH_CAMERAS),
+            (self.resolution.is_some(), "--resolution", DRAWING),
+            (self.rescue.is_some(), "--rescue", &[Estimator::ItemBuffer]),
+        ];
+        let cameras = self.cameras.without_side().map(|name| (name, WITH_CAMERAS));
+        cameras.chain(only_given(own)).chain(self.rays.given())
     }
 }
 

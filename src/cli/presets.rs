@@ -17,9 +17,22 @@ pub const VISIBILITY_POWER: f64 = 2.0;
 /// [`Error::Unavailable`] for a backend or an estimator that this version does not have, [`Error::Option`] for flags that
 /// do not go together; as [`super::cameras::CameraFlags::cameras`].
 pub fn measure_options(flags: &LookingFlags, global: &GlobalFlags) -> Result<MeasureOptions> {
+    looking_and(flags, global, &[])
+}
+
+/// The same for a run that does `hidden` with hidden triangles: to be sure of them it draws pictures, whatever measured.
+///
+/// # Errors
+/// As [`measure_options`].
+pub fn simplify_measure_options(flags: &LookingFlags, global: &GlobalFlags, hidden: Hidden) -> Result<MeasureOptions> {
+    looking_and(flags, global, if hidden == Hidden::Delete { &["--resolution"] } else { &[] })
+}
+
+/// `used_besides` are flags that the run needs besides its estimator.
+fn looking_and(flags: &LookingFlags, global: &GlobalFlags, used_besides: &[&str]) -> Result<MeasureOptions> {
     let options = looking_options(flags, global)?;
     options.check()?;
-    check_owners(flags, &[options.estimator])?;
+    check_owners(flags, &[options.estimator], used_besides)?;
     Ok(options)
 }
 
@@ -29,7 +42,7 @@ pub fn measure_options(flags: &LookingFlags, global: &GlobalFlags) -> Result<Mea
 /// [`Error::Option`] for a flag of an estimator that no setting has; as [`super::cameras::CameraFlags::cameras`].
 pub fn verify_options(flags: &LookingFlags, global: &GlobalFlags, settings: &[Setting]) -> Result<MeasureOptions> {
     let estimators: Vec<Estimator> = settings.iter().map(|setting| setting.estimator).collect();
-    check_owners(flags, &estimators)?;
+    check_owners(flags, &estimators, &[])?;
     looking_options(flags, global)
 }
 
@@ -51,16 +64,19 @@ fn looking_options(flags: &LookingFlags, global: &GlobalFlags) -> Result<Measure
     })
 }
 
-/// Refuses a flag that belongs to an estimator which does not look.
-fn check_owners(flags: &LookingFlags, estimators: &[Estimator]) -> Result<()> {
-    let rescue = flags.rescue.is_some().then_some(("--rescue", Estimator::ItemBuffer));
-    let strange = rescue.into_iter().chain(flags.rays.given()).find(|(_, owner)| !estimators.contains(owner));
-    let Some((name, owner)) = strange else { return Ok(()) };
-    let looking: Vec<&str> = estimators.iter().map(|estimator| estimator.name()).collect();
+/// Refuses a flag that belongs to estimators of which none looks.
+fn check_owners(flags: &LookingFlags, estimators: &[Estimator], used_besides: &[&str]) -> Result<()> {
+    let is_used = |name: &str, owners: &[Estimator]| {
+        used_besides.contains(&name) || owners.iter().any(|owner| estimators.contains(owner))
+    };
+    let Some((name, owners)) = flags.owned().find(|(name, owners)| !is_used(name, owners)) else { return Ok(()) };
+    let names = |all: &[Estimator]| all.iter().map(|one| one.name()).collect::<Vec<_>>().join(", ");
     let message = format!(
-        "belongs to the estimator {}, and what looks is {}; ask for that estimator or leave the flag out",
-        owner.name(),
-        looking.join(", ")
+        "belongs to the estimator{} {}, and what looks is {}; ask for {} or leave the flag out",
+        if owners.len() > 1 { "s" } else { "" },
+        names(owners),
+        names(estimators),
+        if owners.len() > 1 { "one of these" } else { "that estimator" },
     );
     Err(Error::Option { name, message })
 }

@@ -96,13 +96,14 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
 fn request(flags: &Flags, console: &Console) -> outsight::Result<SimplifyRequest> {
     let preset = flags.looking.preset;
     let metric = presets::metric(&flags.collapse)?;
+    let hidden = presets::hidden(&flags.collapse, preset, metric)?;
     Ok(SimplifyRequest {
         input: flags.input.mesh.clone(),
         read: flags.input.reading.options(&console.global),
         metric,
-        measure: presets::measure_options(&flags.looking, &console.global)?,
+        measure: presets::simplify_measure_options(&flags.looking, &console.global, hidden)?,
         occluders: flags.around.occluders.clone(),
-        hidden: presets::hidden(&flags.collapse, preset, metric)?,
+        hidden,
         visibility_power: presets::visibility_power(&flags.collapse),
         simplify: SimplifyOptions { max_error: flags.max_error, ..presets::simplify_options(&flags.collapse, preset)? },
         levels: levels(flags)?,
