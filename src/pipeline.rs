@@ -46,7 +46,7 @@ use crate::error::Result;
 use crate::io::{self, Attributes, Loaded, WriteOptions};
 use crate::pipeline::observation::{Observation, Surrounded};
 use crate::progress::{CancelFlag, Progress, Silent};
-use crate::visibility::{Hidden, Look};
+use crate::visibility::{Hidden, Look, MeasureOptions, Visibility};
 
 /// Reads a mesh, looks at it, simplifies it where nobody looks, writes every level.
 ///
@@ -98,6 +98,14 @@ pub trait Observer: Progress {
     /// # Errors
     /// Whatever the observer decides.
     fn mesh_read(&self, _path: &Path, _loaded: &Loaded) -> Result<()> {
+        Ok(())
+    }
+
+    /// The mesh was looked at under `options`, by this run or by an earlier one that kept the look.
+    ///
+    /// # Errors
+    /// Whatever the observer decides.
+    fn measured(&self, _options: &MeasureOptions, _seen: &Visibility) -> Result<()> {
         Ok(())
     }
 

@@ -376,6 +376,33 @@ fn warnings_are_lines_and_entries_and_errors_under_strict() {
     assert!(!home.path().join("s.ply").exists());
 }
 
+#[cfg(feature = "embree")]
+#[test]
+fn an_error_out_of_reach_is_a_warning_and_under_strict_the_end() {
+    let home = directory();
+    let exact = ["cube.off", "--target-error", "1e-9", "--target-error-p99", "0.5"];
+    let rays = ["--estimator", "hemisphere", "--backend", "embree"];
+    let warning = "--target-error 1.000e-9 is not reached, 1.321e-5 is: 65,536 rays are the most a triangle casts";
+    let measure = [&["measure"], &exact[..], &rays, &["--cache", "cube.seen"]].concat();
+    for seen in ["now", "kept"] {
+        let ended = run(home.path(), &measure);
+        assert_eq!((ended.code, ended.err), (0, format!("warning: {warning}\n")), "{seen}");
+    }
+    let object = json(home.path(), &[&measure[..], &["--json"]].concat());
+    assert_eq!(
+        (&object["warnings"], &object["standard_error"]["end"]),
+        (&serde_json::json!([warning]), &"most_samples".into())
+    );
+    let simplify = [&["simplify"], &exact[..], &rays, &["-o", "x.ply", "-r", "0.5", "--strict"]].concat();
+    let strict = run(home.path(), &simplify);
+    assert_eq!((strict.code, strict.err), (5, format!("error: {warning} (--strict makes this an error)\n")));
+    assert!(!home.path().join("x.ply").exists());
+    let verify = [&["verify"], &exact[..], &["--backends", "embree,hemisphere", "--cameras", "18"]].concat();
+    assert!(run(home.path(), &verify).err.contains(warning));
+    let reached = [&measure[..2], &rays, &["--target-error", "0.01"]].concat();
+    assert_eq!(run(home.path(), &reached).err, "");
+}
+
 #[test]
 fn pipes_carry_meshes_and_nothing_else() {
     let home = directory();

@@ -6,7 +6,6 @@ use clap::Args;
 use outsight::Error;
 use outsight::pipeline::{DiagramRequest, ErrorSummary, MeasureReport, MeasureRequest, measure_file};
 use outsight::report::table::thousands;
-use outsight::visibility::RayOptions;
 use serde::Serialize;
 use serde_json::Value;
 
@@ -144,7 +143,7 @@ fn text(report: &MeasureReport, request: &MeasureRequest) -> String {
         rows.insert(1, ("with backs", format!("{:.4}  (--sides {})", seen.mesh_sides, report.sides)));
     }
     if let Some(error) = &report.standard_error {
-        rows.insert(1, ("standard error", exactness(error, &request.measure.rays)));
+        rows.insert(1, ("standard error", exactness(error)));
     }
     if report.occluder_triangles > 0 {
         rows.insert(2, ("around it", format!("{} triangles of occluders", count(report.occluder_triangles))));
@@ -166,13 +165,8 @@ fn looked_with(report: &MeasureReport) -> String {
     parts.join(", ")
 }
 
-fn exactness(error: &ErrorSummary, asked: &RayOptions) -> String {
+fn exactness(error: &ErrorSummary) -> String {
     let [mesh, p99] = [error.mesh, error.p99].map(significant);
     let samples = thousands(error.samples.into());
-    let reached = format!("{mesh}, of single triangles at most {p99} for 99 in 100  ({samples} rays a side)");
-    let missed =
-        [("--target-error", asked.target_error, error.mesh), ("--target-error-p99", asked.target_error_p99, error.p99)];
-    let missed = missed.iter().filter(|(_, target, got)| target.is_some_and(|target| *got > target));
-    missed
-        .fold(reached, |text, (name, ..)| format!("{text}; {name} is not reached with the most rays a triangle casts"))
+    format!("{mesh}, of single triangles at most {p99} for 99 in 100  ({samples} rays a side)")
 }

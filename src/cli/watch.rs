@@ -7,11 +7,12 @@ use outsight::error::{Error, Result};
 use outsight::io::Loaded;
 use outsight::pipeline::Observer;
 use outsight::progress::Progress;
+use outsight::visibility::{MeasureOptions, RayOptions, SamplingEnd, Visibility};
 use serde::Serialize;
 
 use super::console::Console;
 use super::estimate::{Task, memory_bytes};
-use super::text::{count, megabytes};
+use super::text::{count, megabytes, significant};
 
 /// Watches one run of the library for a command.
 #[derive(Debug)]
@@ -99,6 +100,15 @@ impl Observer for Watch<'_> {
         check_memory(self.console.global.memory_limit, self.task, triangles)
     }
 
+    fn measured(&self, options: &MeasureOptions, seen: &Visibility) -> Result<()> {
+        let Some(message) = missed_errors(&options.rays, seen) else { return Ok(()) };
+        if self.console.global.strict {
+            return Err(Error::Limit { message: format!("{message} (--strict makes this an error)") });
+        }
+        self.console.announce(&message);
+        Ok(())
+    }
+
     fn hidden_deleted(&self, deleted: usize, given: usize) -> Result<()> {
         let share = 100.0 * deleted as f64 / given.max(1) as f64;
         let found =
@@ -115,6 +125,19 @@ impl Observer for Watch<'_> {
         self.console.announce(&format!("{found}; --hidden keep keeps them"));
         Ok(())
     }
+}
+
+/// Standard errors that were asked for and are out of reach.
+fn missed_errors(asked: &RayOptions, seen: &Visibility) -> Option<String> {
+    let got = seen.details().standard_error.as_ref().filter(|error| error.end == SamplingEnd::MostSamples)?;
+    let of_mesh = ("--target-error", asked.target_error, got.of_mesh);
+    let of_triangles = ("--target-error-p99", asked.target_error_p99, got.p99);
+    let missed = |(name, target, got): (&str, Option<f64>, f64)| {
+        let target = target.filter(|&target| got > target)?;
+        Some(format!("{name} {} is not reached, {} is", significant(target), significant(got)))
+    };
+    let missed: Vec<String> = [of_mesh, of_triangles].into_iter().filter_map(missed).collect();
+    Some(format!("{}: {} rays are the most a triangle casts", missed.join("; "), count(got.samples as usize)))
 }
 
 fn set_aside_message(loaded: &Loaded) -> Option<String> {

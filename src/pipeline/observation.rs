@@ -71,11 +71,13 @@ impl<'a> Observation<'a> {
     }
 
     pub fn visibility(&mut self, observer: &dyn Observer) -> Result<Visibility> {
-        if let Some(found) = self.kept.as_mut().and_then(|kept| kept.visibility.take()) {
-            return Ok(found);
-        }
         let options = self.options;
-        self.subject()?.measure(options, observer)
+        let seen = match self.kept.as_mut().and_then(|kept| kept.visibility.take()) {
+            Some(found) => found,
+            None => self.subject()?.measure(options, observer)?,
+        };
+        observer.measured(options, &seen)?;
+        Ok(seen)
     }
 
     /// The marks of [`Hidden::marks`].

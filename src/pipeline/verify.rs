@@ -131,9 +131,10 @@ pub fn verify_file(request: &VerifyRequest, observer: &dyn Observer) -> Result<V
     let comparing = Comparing { cameras: &cameras, options, progress: observer };
     let subject = Subject::new(&loaded.mesh, request.settings[0].backend)?;
     let first = Measurement::take(&subject, request.settings[0], comparing)?;
+    observer.measured(options, &first.visibility)?;
     let mut pairs = Vec::new();
     for number in 1..request.settings.len() {
-        pairs.push(verify_pair(&first, number, comparing, request)?);
+        pairs.push(verify_pair(&first, number, (comparing, observer), request)?);
     }
     Ok(VerifyReport {
         pairs,
@@ -146,12 +147,13 @@ pub fn verify_file(request: &VerifyRequest, observer: &dyn Observer) -> Result<V
 fn verify_pair(
     first: &Measurement<'_>,
     number: usize,
-    comparing: Comparing<'_>,
+    (comparing, observer): (Comparing<'_>, &dyn Observer),
     request: &VerifyRequest,
 ) -> Result<PairReport> {
     let setting = request.settings[number];
     let subject = Subject::new(first.subject.mesh(), setting.backend)?;
     let second = Measurement::take(&subject, setting, comparing)?;
+    observer.measured(comparing.options, &second.visibility)?;
     let agreement = Agreement::of(first, &second, comparing)?;
     let mut report = PairReport::new(first, &second, &agreement, comparing);
     if let Some(files) = request.pictures_of(number) {
