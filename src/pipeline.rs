@@ -19,6 +19,7 @@ mod observation;
 mod render;
 mod side_by_side;
 mod simplify;
+mod surroundings;
 mod verify;
 
 pub use compare::{CompareReport, CompareRequest, GeometricReport, TestReport, compare_files};
@@ -44,7 +45,8 @@ use std::time::Instant;
 
 use crate::error::Result;
 use crate::io::{self, Attributes, Loaded, WriteOptions};
-use crate::pipeline::observation::{Observation, Surrounded};
+use crate::pipeline::observation::Observation;
+use crate::pipeline::surroundings::Surroundings;
 use crate::progress::{CancelFlag, Progress, Silent};
 use crate::visibility::{Hidden, Look, MeasureOptions, Visibility};
 
@@ -55,7 +57,7 @@ use crate::visibility::{Hidden, Look, MeasureOptions, Visibility};
 pub fn run_simplify(request: &SimplifyRequest, observer: &dyn Observer) -> Result<SimplifyReport> {
     let mut clock = Clock::start();
     request.check()?;
-    let occluders = measure::read_occluders(&request.occluders, &request.read)?;
+    let occluders = Surroundings::read(&request.occluders, &request.read)?;
     let mesh = {
         let loaded = io::read(&request.input, &request.read)?;
         observer.mesh_read(&request.input, &loaded)?;
@@ -66,8 +68,8 @@ pub fn run_simplify(request: &SimplifyRequest, observer: &dyn Observer) -> Resul
     let mut reused = None;
     let look = match request.metric {
         Metric::Visibility => {
-            let scene = Surrounded { mesh: &mesh, occluders: &occluders };
-            let mut observation = Observation::of(scene, &request.measure, request.cache.as_deref())?;
+            let mut observation =
+                Observation::of(occluders.around(&mesh)?, &request.measure, request.cache.as_deref())?;
             let visibility = observation.visibility(observer)?;
             seconds.visibility = clock.lap();
             let hidden = observation.hidden(request.hidden, &visibility, observer)?;

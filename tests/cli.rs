@@ -649,6 +649,59 @@ fn an_enclosure_hides_all_and_is_never_written() {
     assert!(ended.err.contains("--occluder: --metric quadric does not look"), "{}", ended.err);
 }
 
+/// A square floor just below `cube.off`.
+fn floor(half_width: &str) -> String {
+    let w = half_width;
+    format!("OFF\n4 2 0\n-{w} -{w} -1.01\n{w} -{w} -1.01\n{w} {w} -1.01\n-{w} {w} -1.01\n3 0 1 2\n3 0 2 3\n")
+}
+
+#[test]
+fn an_occluder_that_reaches_too_far_is_named_by_every_command_and_backend() {
+    let home = directory();
+    fs::write(home.path().join("huge.off"), floor("1e19")).unwrap();
+    let mut commands = vec![
+        vec!["measure", "cube.off"],
+        vec!["simplify", "cube.off", "-o", "x.ply", "-r", "0.5"],
+        vec!["explain", "cube.off", "0"],
+        vec!["verify", "cube.off", "--backends", "raster,raster"],
+        vec!["study", "convergence", "cube.off", "-o", "study", "--against", "fibonacci"],
+    ];
+    if cfg!(feature = "embree") {
+        commands.push(vec!["measure", "cube.off", "--backend", "embree"]);
+        commands.push(vec!["measure", "cube.off", "--backend", "embree", "--estimator", "hemisphere"]);
+    }
+    for command in commands {
+        let ended = run(home.path(), &[&command[..], &["--occluder", "huge.off"]].concat());
+        let message = "error: huge.off: reaches 8.2e18 times as far as the mesh, an occluder at most 1000 times";
+        assert_eq!((ended.code, ended.err.starts_with(message)), (5, true), "{command:?}: {}", ended.err);
+    }
+}
+
+#[test]
+fn verify_and_study_look_past_the_same_floor() {
+    let home = directory();
+    fs::write(home.path().join("floor.off"), floor("100")).unwrap();
+    let around = ["--occluder", "floor.off", "--json"];
+    let backends = if cfg!(feature = "embree") { "raster,embree,hemisphere" } else { "raster,item-buffer" };
+    let few = ["--cameras", "66", "--resolution", "100", "--camera-rotation", "3"];
+    let verified = json(home.path(), &[&["verify", "cube.off", "--backends", backends][..], &few, &around].concat());
+    for pair in verified["pairs"].as_array().unwrap() {
+        for v in pair["visibility"].as_array().unwrap() {
+            // Top 1, bottom 0, walls a half.
+            assert!((v.as_f64().unwrap() - 0.5).abs() < 0.03, "{pair}");
+        }
+        assert_ne!(pair["pass"], false, "{pair}");
+    }
+    assert_eq!(verified["occluders"], serde_json::json!(["floor.off"]));
+    let small = ["--resolution", "32", "--against", "fibonacci"];
+    let study = |output: &str, more: &[&str]| {
+        let all = [&["study", "convergence", "cube.off", "-o", output, "--json"][..], &small, more].concat();
+        json(home.path(), &all)["meshes"][0]["errors"][0]["against_reference"].as_f64().unwrap()
+    };
+    // Six cameras look along the floor; those of the reference do not.
+    assert!(study("floor", &around[..2]) > study("open", &[]) + 0.05);
+}
+
 #[test]
 fn convergence_is_written_whole_and_shows_both_weights() {
     let home = directory();

@@ -19,6 +19,7 @@ fn study(directory: &tempfile::TempDir) -> ConvergenceReport {
     let well = shapes::cylindrical_well(1.0, [12, 2]).mesh;
     io::write(&path, &well, &Attributes::default(), &WriteOptions::default()).unwrap();
     let request = ConvergenceRequest {
+        occluders: Vec::new(),
         inputs: vec![path],
         read: ReadOptions::default(),
         against: IndependentReference::Hemisphere(SAMPLES),

@@ -195,6 +195,24 @@ fn explain_names_the_triangle_in_the_way_by_its_number_in_the_file() {
 }
 
 #[test]
+fn explain_names_the_occluder_in_the_way() {
+    let home = directory();
+    // Below the sheet, seen from whose back it hides everything; triangle 0 of the file repeats a vertex.
+    let floor = "OFF\n4 3 0\n-900 -900 -1\n900 -900 -1\n900 900 -1\n-900 900 -1\n3 0 0 1\n3 0 1 2\n3 0 2 3\n";
+    fs::write(home.path().join("floor.off"), floor).unwrap();
+    let arguments = ["explain", "covered.off", "0", "--back", "--cameras", "6", "--occluder", "floor.off"];
+    let found = json(home.path(), &[&arguments[..], &["--json"]].concat());
+    assert_eq!(found["blockers"].as_array().unwrap().len(), 1);
+    let (blocker, down) = (&found["blockers"][0], &found["cameras"][5]);
+    assert_eq!((&blocker["occluder"], &blocker["cameras"]), (&"floor.off".into(), &1.into()));
+    assert!([1, 2].contains(&blocker["triangle"].as_u64().unwrap()), "{blocker}");
+    assert_eq!((&down["occluder"], &down["blocked_by"]), (&"floor.off".into(), &blocker["triangle"]));
+    assert_eq!((&found["visibility"], &found["occluders"]), (&0.0.into(), &serde_json::json!(["floor.off"])));
+    let text = run(home.path(), &arguments).out;
+    assert!(text.contains(&format!("blocked by {} of floor.off", blocker["triangle"])), "{text}");
+}
+
+#[test]
 fn explain_says_which_triangles_there_are() {
     let home = directory();
     let refused = |more: &[&str]| {

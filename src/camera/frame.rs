@@ -1,5 +1,6 @@
 use glam::DVec3;
 
+use crate::camera::Occluders;
 use crate::error::{Error, Result};
 use crate::geom;
 use crate::mesh::{MAX_TRIANGLES, TriMesh, TriangleId};
@@ -17,10 +18,6 @@ pub struct Frame {
 
 /// Triangles below this area, in unit-sphere units, are not seen and hide nothing.
 const DEGENERATE_AREA: f64 = 1e-14;
-
-/// How far the sheets of an occluder stand apart, as a share of the reach of the scene: hundreds of times what positions
-/// and depths are rounded by, and a hundredth of a pixel.
-const CONTACT: f64 = 4e-6;
 
 /// A mesh in the unit sphere, narrowed to `f32`: what rasters and rays work on.
 #[derive(Debug, Clone)]
@@ -70,21 +67,21 @@ impl Frame {
         UnitMesh {
             positions: mesh.positions().iter().map(|&p| unit(p).as_vec3().to_array()).collect(),
             triangles: visible.map(|(id, &t)| (t, id)).collect(),
-            extent: corners_of_all(mesh).map(|p| unit(p).length()).fold(0.0, f64::max),
+            extent: self.reach(mesh),
         }
     }
 
-    /// A mesh as seen in this frame with occluders that stand around it in the same coordinates.
+    /// A mesh as seen in this frame with the sheets of occluders that stand around it in the same coordinates.
     ///
     /// `unit` shows a mesh of `triangles` triangles. Triangle t of the first occluder gets the number `triangles` + t; the
-    /// next occluder follows. Each
-    /// is three sheets, itself and a shifted copy to either side, a few millionths apart: surface that lies on an
-    /// occluder, as a part on a floor, is between them and hidden, whatever rounding says.
+    /// next occluder follows.
     ///
     /// # Errors
-    /// [`Error::Limit`] if there are more triangles than can be numbered.
+    /// [`Error::Limit`] if there are more triangles than can be numbered, or an occluder reaches too far: see
+    /// [`Occluders::check`].
     pub fn among(&self, mut unit: UnitMesh, triangles: usize, occluders: &[TriMesh]) -> Result<UnitMesh> {
-        let around: usize = occluders.iter().map(TriMesh::triangle_count).sum();
+        let occluders = Occluders::around(*self, occluders)?;
+        let around = occluders.triangle_count();
         if around == 0 {
             return Ok(unit);
         }
@@ -93,28 +90,19 @@ impl Frame {
             let message = format!("occluders of {around} triangles are more than can be numbered; take simpler ones");
             return Err(Error::Limit { message });
         }
-        let reach = |o: &TriMesh| corners_of_all(o).map(|p| self.to_unit(p).length()).fold(0.0, f64::max);
-        unit.extent = occluders.iter().map(reach).fold(unit.extent, f64::max);
-        let shift = CONTACT * unit.extent;
-        unit.extent += shift;
-        let mut first = triangles as u32;
-        for occluder in occluders {
-            self.append_sheets(occluder, first, shift, &mut unit);
-            first += occluder.triangle_count() as u32;
+        unit.extent = unit.extent.max(occluders.extent());
+        for (number, corners) in occluders.sheets() {
+            let next = unit.positions.len() as u32;
+            unit.positions.extend(corners.map(|p| p.as_vec3().to_array()));
+            unit.triangles.push(([next, next + 1, next + 2], TriangleId(triangles as u32 + number)));
         }
         Ok(unit)
     }
 
-    fn append_sheets(&self, occluder: &TriMesh, first: u32, shift: f64, unit: &mut UnitMesh) {
-        for t in 0..occluder.triangle_count() as u32 {
-            let Some((_, normal)) = self.area_and_normal(occluder, TriangleId(t)) else { continue };
-            let corners = occluder.corners(TriangleId(t)).map(|p| self.to_unit(p));
-            for distance in [-shift, 0.0, shift] {
-                let next = unit.positions.len() as u32;
-                unit.positions.extend(corners.map(|p| (p + distance * normal).as_vec3().to_array()));
-                unit.triangles.push(([next, next + 1, next + 2], TriangleId(first + t)));
-            }
-        }
+    /// How far a mesh reaches from the centre of this frame, in unit-sphere units.
+    #[must_use]
+    pub fn reach(&self, mesh: &TriMesh) -> f64 {
+        corners_of_all(mesh).map(|p| self.to_unit(p).length()).fold(0.0, f64::max)
     }
 
     /// Area (unit-sphere units) and unit normal of a triangle; `None` for a degenerate one.

@@ -9,6 +9,7 @@
 
 mod cameras;
 mod frame;
+mod occluders;
 mod pattern;
 mod rotation;
 mod sphere;
@@ -16,6 +17,7 @@ mod view;
 
 pub use cameras::{CameraList, CameraPattern, Cameras};
 pub use frame::{Frame, UnitMesh};
+pub use occluders::Occluders;
 pub use rotation::random_rotation;
 pub use sphere::{Axis, CameraSphere, CameraWeights};
 pub use view::{View, Window};

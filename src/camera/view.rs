@@ -1,6 +1,7 @@
 use glam::DVec3;
 
 use crate::camera::Axis;
+use crate::error::Error;
 
 /// The square that orthographic images cover, in unit-sphere units; all cameras of a run share one.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,6 +23,19 @@ impl Window {
     #[must_use]
     pub fn pixel_size(&self) -> f64 {
         2.0 * self.half_width / f64::from(self.width)
+    }
+
+    /// The error for a scene that reaches `extent` from the centre, too far for this window's pixels to be told apart.
+    #[must_use]
+    pub fn too_small_for(&self, extent: f64) -> Error {
+        let times = extent / self.half_width;
+        let times = if times < 1e6 { format!("{times:.0}") } else { format!("{times:.1e}") };
+        let message = format!(
+            "a scene that reaches {times} times as far as its picture cannot be drawn with {} pixels along the side; are the \
+             units the same? if so, take fewer pixels or a smaller scene",
+            self.width
+        );
+        Error::Limit { message }
     }
 
     /// Pixels in an image.

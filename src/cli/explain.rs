@@ -1,5 +1,7 @@
 //! `outsight explain`: why a triangle is as visible as it is.
 
+use std::path::{Path, PathBuf};
+
 use clap::Args;
 use outsight::Error;
 use outsight::pipeline::{BlockerReport, ExplainReport, ExplainRequest, SightReport, explain_file};
@@ -9,7 +11,7 @@ use serde::Serialize;
 use super::console::Console;
 use super::estimate::Task;
 use super::failure::Failure;
-use super::flags::{InputFlags, LookingFlags};
+use super::flags::{InputFlags, LookingFlags, OccluderFlags};
 use super::presets;
 use super::text::{count, table};
 use super::watch::{Found, Watch};
@@ -32,6 +34,8 @@ pub struct Flags {
     all: bool,
     #[command(flatten)]
     looking: LookingFlags,
+    #[command(flatten)]
+    around: OccluderFlags,
 }
 
 /// The library's report with what only the program knows.
@@ -41,6 +45,7 @@ struct Object<'a> {
     report: &'a ExplainReport,
     #[serde(flatten)]
     found: Found,
+    occluders: &'a [PathBuf],
 }
 
 /// Explains and prints.
@@ -49,13 +54,14 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
     let request = ExplainRequest {
         input: flags.input.mesh.clone(),
         read: flags.input.reading.options(&console.global),
+        occluders: flags.around.occluders.clone(),
         triangle: flags.triangle,
         side: if flags.back { Side::Back } else { Side::Front },
         measure: presets::measure_options(&flags.looking, &console.global)?,
     };
     let watch = Watch::new(console, Task::Read);
     let report = explain_file(&request, &watch)?;
-    let object = Object { report: &report, found: watch.found() };
+    let object = Object { report: &report, found: watch.found(), occluders: &request.occluders };
     console.result(&object, &text(&report, if flags.all { usize::MAX } else { SHORT }), true)
 }
 
@@ -87,7 +93,9 @@ fn text(report: &ExplainReport, rows: usize) -> String {
         report.visibility, report.resolution,
     );
     if !report.blockers.is_empty() {
-        let row = |blocker: &BlockerReport| vec![blocker.triangle.to_string(), count(blocker.cameras)];
+        let row = |blocker: &BlockerReport| {
+            vec![named(blocker.triangle, blocker.occluder.as_deref()), count(blocker.cameras)]
+        };
         let shown: Vec<Vec<String>> = report.blockers.iter().take(rows).map(row).collect();
         text += &format!("\n{}", table(&["triangle in the way", "of cameras"], &shown));
         text += &more(report.blockers.len(), rows);
@@ -98,10 +106,15 @@ fn text(report: &ExplainReport, rows: usize) -> String {
     text + &more(in_front.len(), rows)
 }
 
+/// A triangle's number, with the file that it is of where that is an occluder.
+fn named(triangle: usize, occluder: Option<&Path>) -> String {
+    occluder.map_or_else(|| triangle.to_string(), |file| format!("{triangle} of {}", file.display()))
+}
+
 fn sight_row(camera: &SightReport) -> Vec<String> {
     let [x, y, z] = camera.direction;
     let sight = match (camera.sight, camera.blocked_by) {
-        (_, Some(triangle)) => format!("blocked by {triangle}"),
+        (_, Some(triangle)) => format!("blocked by {}", named(triangle, camera.occluder.as_deref())),
         ("too_small", _) => "too small".to_owned(),
         (sight, _) => sight.to_owned(),
     };

@@ -13,7 +13,7 @@ use serde::Serialize;
 use super::console::Console;
 use super::estimate::Task;
 use super::failure::Failure;
-use super::flags::ReadingFlags;
+use super::flags::{OccluderFlags, ReadingFlags};
 use super::help;
 use super::outputs;
 use super::system::peak_mib;
@@ -40,6 +40,8 @@ struct ConvergenceFlags {
     meshes: Vec<PathBuf>,
     #[command(flatten)]
     reading: ReadingFlags,
+    #[command(flatten)]
+    around: OccluderFlags,
     /// Directory for convergence.json, .csv and .svg; made if it is not there
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
@@ -85,6 +87,7 @@ struct Object<'a> {
     #[serde(flatten)]
     report: &'a ConvergenceReport,
     peak_mb: Option<f64>,
+    occluders: &'a [PathBuf],
 }
 
 /// Runs the study that was asked for.
@@ -102,13 +105,14 @@ fn convergence(flags: &ConvergenceFlags, console: &Console) -> std::result::Resu
     let request = ConvergenceRequest {
         inputs: flags.meshes.clone(),
         read: flags.reading.options(&console.global),
+        occluders: flags.around.occluders.clone(),
         against,
         resolution: flags.resolution,
         memory_limit: console.global.memory_limit,
     };
     let task = Task::Study { resolution: flags.resolution };
     let report = study_convergence(&request, &Watch::new(console, task))?;
-    let object = Object { report: &report, peak_mb: peak_mib() };
+    let object = Object { report: &report, peak_mb: peak_mib(), occluders: &request.occluders };
     let text_of_json = console.to_json(&object)?;
     let picture = report.plot().to_svg().map_err(|e| Error::Write { path: svg.clone(), message: e.to_string() })?;
     io::write_atomic(&json, force, |out| out.write_all(text_of_json.as_bytes()))?;

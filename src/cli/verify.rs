@@ -12,7 +12,7 @@ use serde_json::Value;
 use super::console::Console;
 use super::estimate::Task;
 use super::failure::Failure;
-use super::flags::{InputFlags, LookingFlags, UpFlags};
+use super::flags::{InputFlags, LookingFlags, OccluderFlags, UpFlags};
 use super::in_force;
 use super::outputs;
 use super::presets;
@@ -34,6 +34,8 @@ pub struct Flags {
     up: UpFlags,
     #[command(flatten)]
     looking: LookingFlags,
+    #[command(flatten)]
+    around: OccluderFlags,
 }
 
 /// The library's report with what only the program knows.
@@ -44,6 +46,7 @@ struct Object<'a> {
     peak_mb: Option<f64>,
     #[serde(flatten)]
     found: Found,
+    occluders: &'a [PathBuf],
     options: Value,
 }
 
@@ -62,6 +65,7 @@ pub fn run(flags: &Flags, console: &Console) -> std::result::Result<(), Failure>
         report: &report,
         peak_mb: peak_mib(),
         found: watch.found(),
+        occluders: &request.occluders,
         options: in_force::verify(&request.measure),
     };
     console.result(&object, &text(&report), true)?;
@@ -82,6 +86,7 @@ fn request(flags: &Flags, console: &Console) -> Result<VerifyRequest> {
         read: flags.input.reading.options(&console.global),
         settings: flags.backends.clone(),
         measure: presets::verify_options(&flags.looking, &console.global, &flags.backends)?,
+        occluders: flags.around.occluders.clone(),
         pictures: flags.output.clone(),
         up: flags.up.up,
         force: console.global.force,

@@ -115,6 +115,12 @@ impl Loaded {
             .collect()
     }
 
+    /// For each triangle of the mesh its number in the file.
+    #[must_use]
+    pub fn numbers_in_file(&self) -> Vec<usize> {
+        (0..).zip(self.file_order()).filter(|(_, id)| id.is_some()).map(|(number, _)| number).collect()
+    }
+
     /// Values of the mesh's triangles, one per triangle of the *file*: those that were set aside get `missing`.
     #[must_use]
     pub fn in_file_order(&self, values: &[f64], missing: f64) -> Vec<f64> {

@@ -7,7 +7,8 @@ use crate::backend::{BackendKind, Workload};
 use crate::camera::{CameraPattern, CameraWeights, Cameras, Window};
 use crate::error::{Error, Result};
 use crate::io::{self, ReadOptions};
-use crate::mesh::TriMesh;
+use crate::pipeline::observation::Surrounded;
+use crate::pipeline::surroundings::Surroundings;
 use crate::pipeline::{Clock, Observer};
 use crate::progress::Progress;
 use crate::report::plot::{Curve, LogLogPlot, Mark, Panel};
@@ -23,6 +24,8 @@ pub struct ConvergenceRequest {
     pub inputs: Vec<PathBuf>,
     /// How they are read.
     pub read: ReadOptions,
+    /// Meshes in the same coordinates that hide and are not studied.
+    pub occluders: Vec<PathBuf>,
     /// What the second comparison is with.
     pub against: IndependentReference,
     /// Pixels along an image's side; `None` takes [`nested_resolution`].
@@ -115,7 +118,7 @@ impl IndependentReference {
     }
 
     /// V of the fronts, by these means.
-    fn measure(self, mesh: &TriMesh, options: &MeasureOptions, progress: &dyn Progress) -> Result<Visibility> {
+    fn measure(self, scene: Surrounded<'_>, options: &MeasureOptions, progress: &dyn Progress) -> Result<Visibility> {
         let mut options = self.setting().apply(options);
         match self {
             Self::Hemisphere(samples) => options.rays = RayOptions { samples, ..options.rays },
@@ -123,7 +126,7 @@ impl IndependentReference {
                 options.cameras = Cameras { pattern: CameraPattern::Fibonacci(SPIRAL), ..options.cameras };
             }
         }
-        Subject::new(mesh, options.backend)?.measure(&options, progress)
+        scene.for_backend(options.backend)?.measure(&options, progress)
     }
 }
 
@@ -137,14 +140,22 @@ impl IndependentReference {
 pub fn study_convergence(request: &ConvergenceRequest, observer: &dyn Observer) -> Result<ConvergenceReport> {
     let against = request.against;
     against.check()?;
-    let meshes = request.inputs.iter().map(|path| study_one(path, request, observer)).collect::<Result<_>>()?;
+    let occluders = Surroundings::read(&request.occluders, &request.read)?;
+    let study = |path: &PathBuf| study_one(path, &occluders, request, observer);
+    let meshes = request.inputs.iter().map(study).collect::<Result<_>>()?;
     Ok(ConvergenceReport { reference: against.setting().to_string(), reference_samples: against.samples(), meshes })
 }
 
-fn study_one(path: &Path, request: &ConvergenceRequest, observer: &dyn Observer) -> Result<MeshConvergence> {
+fn study_one(
+    path: &Path,
+    occluders: &Surroundings,
+    request: &ConvergenceRequest,
+    observer: &dyn Observer,
+) -> Result<MeshConvergence> {
     let loaded = io::read(path, &request.read)?;
     observer.mesh_read(path, &loaded)?;
-    let mesh: TriMesh = loaded.mesh;
+    let mesh = loaded.mesh;
+    let scene = occluders.around(&mesh)?;
     let mut clock = Clock::start();
     let resolution = request.resolution.unwrap_or_else(|| nested_resolution(mesh.triangle_count()));
     let options = MeasureOptions {
@@ -153,8 +164,8 @@ fn study_one(path: &Path, request: &ConvergenceRequest, observer: &dyn Observer)
         memory_limit: request.memory_limit,
         ..MeasureOptions::default()
     };
-    let reference = request.against.measure(&mesh, &options, observer)?;
-    let subject = Subject::new(&mesh, BackendKind::Raster)?;
+    let reference = request.against.measure(scene, &options, observer)?;
+    let subject = scene.for_backend(BackendKind::Raster)?;
     let window = Window::around_sphere(resolution);
     let load = Workload { window, memory_limit: request.memory_limit, phase: "convergence", progress: observer };
     let nested = nested_visibility(&subject, load)?;

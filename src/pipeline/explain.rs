@@ -7,8 +7,10 @@ use crate::error::{Error, Result};
 use crate::io::{self, Loaded, ReadOptions};
 use crate::mesh::TriangleId;
 use crate::pipeline::Observer;
+use crate::pipeline::observation::Surrounded;
+use crate::pipeline::surroundings::Surroundings;
 use crate::raster::Side;
-use crate::visibility::{CameraSight, Explanation, MeasureOptions, Sight, explain};
+use crate::visibility::{CameraSight, Explaining, Explanation, MeasureOptions, Sight, explain};
 
 /// What [`explain_file`] does.
 #[derive(Debug, Clone)]
@@ -17,6 +19,8 @@ pub struct ExplainRequest {
     pub input: PathBuf,
     /// How it is read.
     pub read: ReadOptions,
+    /// Meshes in the same coordinates that may be in the way.
+    pub occluders: Vec<PathBuf>,
     /// The triangle, numbered as in the file from 0.
     pub triangle: usize,
     /// The side to explain.
@@ -51,16 +55,19 @@ pub struct ExplainReport {
 }
 
 /// A triangle in the way.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 pub struct BlockerReport {
     /// Its number.
     pub triangle: usize,
     /// How many cameras it blocks.
     pub cameras: usize,
+    /// The file, where it is a triangle of an occluder.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub occluder: Option<PathBuf>,
 }
 
 /// What one camera makes of the triangle.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 pub struct SightReport {
     /// Number of the camera.
     pub camera: u32,
@@ -70,6 +77,9 @@ pub struct SightReport {
     pub sight: &'static str,
     /// The triangle in the way.
     pub blocked_by: Option<usize>,
+    /// Its file, where it is a triangle of an occluder.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub occluder: Option<PathBuf>,
     /// Share of the triangle's points that it sees.
     pub share: f64,
     /// Between the direction and the side's normal.
@@ -84,6 +94,7 @@ pub struct SightReport {
 /// As its steps; [`Error::Option`] for a triangle that the file does not have, [`Error::Parse`] for one that nobody can see.
 pub fn explain_file(request: &ExplainRequest, observer: &dyn Observer) -> Result<ExplainReport> {
     request.measure.check()?;
+    let occluders = Surroundings::read(&request.occluders, &request.read)?;
     let loaded = io::read(&request.input, &request.read)?;
     observer.mesh_read(&request.input, &loaded)?;
     let order = loaded.file_order();
@@ -91,11 +102,12 @@ pub fn explain_file(request: &ExplainRequest, observer: &dyn Observer) -> Result
     let cameras = request.measure.camera_sphere()?;
     let resolution = request.measure.resolution_for(loaded.mesh.triangle_count());
     let window = Window::around_sphere(resolution);
-    let found = explain(&loaded.mesh, (triangle, request.side), &cameras, window)
+    let Surrounded { mesh, occluders: around } = occluders.around(&loaded.mesh)?;
+    let scene = Explaining { mesh, occluders: around, cameras: &cameras, window, progress: observer };
+    let found = explain(scene, triangle, request.side)?
         .ok_or_else(|| unseeable(request, "is smaller than 1e-14 of the squared radius of the mesh"))?;
-    observer.check()?;
-    let in_file = (0..).zip(&order).filter(|(_, id)| id.is_some()).map(|(t, _)| t).collect::<Vec<usize>>();
-    Ok(ExplainReport { triangle: request.triangle, resolution, ..report(&found, &cameras, &in_file, request.side) })
+    let numbers = Numbers { in_file: loaded.numbers_in_file(), occluders: &occluders };
+    Ok(ExplainReport { triangle: request.triangle, resolution, ..report(&found, &cameras, &numbers, request.side) })
 }
 
 /// The number in the mesh of the triangle that was asked for.
@@ -118,15 +130,41 @@ fn unseeable(request: &ExplainRequest, why: &str) -> Error {
     Error::Parse { place: request.input.display().to_string(), message }
 }
 
-/// `in_file` has the number in the file of each triangle of the mesh.
-fn report(found: &Explanation, cameras: &CameraSphere, in_file: &[usize], side: Side) -> ExplainReport {
+/// Where the triangles that are in the way come from.
+struct Numbers<'a> {
+    /// For each triangle of the mesh its number in the file.
+    in_file: Vec<usize>,
+    occluders: &'a Surroundings,
+}
+
+impl Numbers<'_> {
+    /// A triangle's number in its file, and the file if it is an occluder's.
+    fn of(&self, id: TriangleId) -> (usize, Option<PathBuf>) {
+        let number = id.0 as usize;
+        match self.in_file.get(number) {
+            Some(&number) => (number, None),
+            None => {
+                let found = self.occluders.find(number - self.in_file.len());
+                let (file, number) = found.expect("only triangles of the mesh and of its occluders are in the way");
+                (number, Some(file.to_owned()))
+            }
+        }
+    }
+}
+
+fn report(found: &Explanation, cameras: &CameraSphere, numbers: &Numbers<'_>, side: Side) -> ExplainReport {
     let count = |sight: &str| found.cameras.iter().filter(|answer| name(answer.sight) == sight).count();
-    let blocker = |&(id, cameras): &(TriangleId, usize)| BlockerReport { triangle: in_file[id.0 as usize], cameras };
+    let blocker = |&(id, cameras): &(TriangleId, usize)| {
+        let (triangle, occluder) = numbers.of(id);
+        BlockerReport { triangle, cameras, occluder }
+    };
+    let blocked_by = |sight| if let Sight::Blocked(id) = sight { Some(numbers.of(id)) } else { None };
     let camera = |answer: &CameraSight| SightReport {
         camera: answer.camera,
         direction: cameras.directions()[answer.camera as usize].to_array(),
         sight: name(answer.sight),
-        blocked_by: if let Sight::Blocked(id) = answer.sight { Some(in_file[id.0 as usize]) } else { None },
+        blocked_by: blocked_by(answer.sight).map(|(triangle, _)| triangle),
+        occluder: blocked_by(answer.sight).and_then(|(_, file)| file),
         share: answer.share,
         cosine: answer.cosine,
         pixels: answer.pixels,

@@ -4,9 +4,9 @@ use serde::Serialize;
 
 use crate::error::Result;
 use crate::io::{self, Attributes, Loaded, ReadOptions, WriteOptions};
-use crate::mesh::TriMesh;
 use crate::pipeline::diagram::Record;
-use crate::pipeline::observation::{Observation, Surrounded};
+use crate::pipeline::observation::Observation;
+use crate::pipeline::surroundings::Surroundings;
 use crate::pipeline::{Clock, DiagramRequest, Observer};
 use crate::report::colour::ColourMap;
 use crate::visibility::{MeasureOptions, Rescue, StandardError, Visibility, per_vertex};
@@ -137,15 +137,14 @@ pub struct MeasureSeconds {
 pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result<MeasureReport> {
     let mut clock = Clock::start();
     request.measure.check()?;
-    let occluders = read_occluders(&request.occluders, &request.read)?;
+    let occluders = Surroundings::read(&request.occluders, &request.read)?;
     request.diagram.as_ref().map_or(Ok(()), |diagram| diagram.check(&request.measure))?;
     let loaded = io::read(&request.input, &request.read)?;
     observer.mesh_read(&request.input, &loaded)?;
     let read = clock.lap();
     // A cache keeps no diagram: who wants one must look.
     let cache = request.cache.as_deref().filter(|_| request.diagram.is_none());
-    let scene = Surrounded { mesh: &loaded.mesh, occluders: &occluders };
-    let mut observation = Observation::of(scene, &request.measure, cache)?;
+    let mut observation = Observation::of(occluders.around(&loaded.mesh)?, &request.measure, cache)?;
     let build = clock.lap();
     let (visibility, record) = look(&mut observation, request, observer)?;
     let looked = clock.lap();
@@ -163,7 +162,7 @@ pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result
         backend: request.measure.backend.name(),
         estimator: request.measure.estimator.name(),
         sides: request.measure.sides.name(),
-        occluder_triangles: occluders.iter().map(TriMesh::triangle_count).sum(),
+        occluder_triangles: occluders.triangle_count(),
         cache: observation.reused(),
         visibility: VisibilitySummary {
             mesh: visibility.of_mesh(),
@@ -176,13 +175,6 @@ pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result
         rays: visibility.details().rays,
         standard_error: visibility.details().standard_error.as_ref().map(ErrorSummary::from),
     })
-}
-
-/// Reads what stands around a mesh.
-pub(super) fn read_occluders(paths: &[PathBuf], options: &ReadOptions) -> Result<Vec<TriMesh>> {
-    // The format is told for the mesh alone.
-    let options = ReadOptions { format: None, ..options.clone() };
-    paths.iter().map(|path| Ok(io::read(path, &options)?.mesh)).collect()
 }
 
 fn look(

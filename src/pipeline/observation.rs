@@ -2,6 +2,7 @@ use std::fs::{self, File};
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
+use crate::backend::BackendKind;
 use crate::error::{Error, Result};
 use crate::io;
 use crate::mesh::TriMesh;
@@ -27,6 +28,13 @@ pub fn cache_is_file(cache: &Path) -> bool {
 pub(super) struct Surrounded<'a> {
     pub mesh: &'a TriMesh,
     pub occluders: &'a [TriMesh],
+}
+
+impl<'a> Surrounded<'a> {
+    /// Lays it out.
+    pub fn for_backend(self, backend: BackendKind) -> Result<Subject<'a>> {
+        Subject::among(self.mesh, self.occluders, backend)
+    }
 }
 
 /// A look at a mesh that may have been taken by an earlier run.
@@ -65,7 +73,7 @@ impl<'a> Observation<'a> {
     pub fn subject(&mut self) -> Result<&Subject<'a>> {
         let subject = match self.subject.take() {
             Some(subject) => subject,
-            None => Subject::among(self.scene.mesh, self.scene.occluders, self.options.backend)?,
+            None => self.scene.for_backend(self.options.backend)?,
         };
         Ok(self.subject.insert(subject))
     }

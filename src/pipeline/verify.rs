@@ -5,6 +5,7 @@ use serde::Serialize;
 use crate::error::{Error, Result};
 use crate::io::{self, ReadOptions};
 use crate::pipeline::disagreement::{PairPictures, write_pictures};
+use crate::pipeline::surroundings::Surroundings;
 use crate::pipeline::{Clock, Observer};
 use crate::visibility::agreement::{Agreement, Causes, Comparing, Contacts, Limits, Measurement, WorstTriangle};
 use crate::visibility::{MeasureOptions, Setting, Subject};
@@ -20,6 +21,8 @@ pub struct VerifyRequest {
     pub settings: Vec<Setting>,
     /// How all of them look; backend and estimator are each setting's own.
     pub measure: MeasureOptions,
+    /// Meshes in the same coordinates that hide and are not compared.
+    pub occluders: Vec<PathBuf>,
     /// Directory for pictures of where they differ; made if it is not there.
     pub pictures: Option<PathBuf>,
     /// Upward in the pictures, any length but 0.
@@ -124,12 +127,13 @@ fn named(setting: Setting, error: Error) -> Error {
 pub fn verify_file(request: &VerifyRequest, observer: &dyn Observer) -> Result<VerifyReport> {
     let clock = Clock::start();
     request.check()?;
+    let occluders = Surroundings::read(&request.occluders, &request.read)?;
     let loaded = io::read(&request.input, &request.read)?;
     observer.mesh_read(&request.input, &loaded)?;
     let options = &request.measure;
     let cameras = options.camera_sphere()?;
     let comparing = Comparing { cameras: &cameras, options, progress: observer };
-    let subject = Subject::new(&loaded.mesh, request.settings[0].backend)?;
+    let subject = occluders.around(&loaded.mesh)?.for_backend(request.settings[0].backend)?;
     let first = Measurement::take(&subject, request.settings[0], comparing)?;
     observer.measured(options, &first.visibility)?;
     let mut pairs = Vec::new();
@@ -151,7 +155,7 @@ fn verify_pair(
     request: &VerifyRequest,
 ) -> Result<PairReport> {
     let setting = request.settings[number];
-    let subject = Subject::new(first.subject.mesh(), setting.backend)?;
+    let subject = Subject::among(first.subject.mesh(), first.subject.occluders(), setting.backend)?;
     let second = Measurement::take(&subject, setting, comparing)?;
     observer.measured(comparing.options, &second.visibility)?;
     let agreement = Agreement::of(first, &second, comparing)?;

@@ -1,5 +1,5 @@
 use crate::camera::{UnitMesh, View, Window};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::raster::cluster::Clusters;
 use crate::raster::draw::Screen;
 use crate::raster::item_buffer::ItemBufferPair;
@@ -30,14 +30,9 @@ impl Scene {
     /// `screen` is room to work in, kept by the caller from view to view.
     ///
     /// # Errors
-    /// [`Error::Limit`] if the mesh is so much larger than the window that its vertices cannot be told apart.
+    /// [`crate::Error::Limit`] if the mesh is so much larger than the window that its vertices cannot be told apart.
     pub fn draw(&self, view: &View, screen: &mut Screen, buffers: &mut ItemBufferPair) -> Result<()> {
-        let projection = Projection::new(view, self.extent).ok_or_else(|| Error::Limit {
-            message: format!(
-                "a mesh {:.0} times larger than the picture cannot be drawn; are the units the same?",
-                self.extent / view.window.half_width
-            ),
-        })?;
+        let projection = Projection::new(view, self.extent).ok_or_else(|| view.window.too_small_for(self.extent))?;
         buffers.clear();
         for cluster in self.clusters.iter() {
             screen.draw(cluster, &projection, buffers);

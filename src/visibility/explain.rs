@@ -1,10 +1,13 @@
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::camera::{CameraSphere, Frame, Window};
+use crate::camera::{CameraSphere, Frame, Occluders, Window};
+use crate::error::Result;
 use crate::mesh::{TriMesh, TriangleId};
+use crate::progress::Progress;
 use crate::raster::Side;
 
 /// Points that rays start from, in barycentric coordinates: inside the triangle, each standing for a quarter of it.
@@ -60,24 +63,38 @@ pub struct Explanation {
     pub blockers: Vec<(TriangleId, usize)>,
 }
 
+/// Who looks at a triangle, and what stands around it.
+#[derive(Clone, Copy)]
+pub struct Explaining<'a> {
+    /// The triangle's mesh.
+    pub mesh: &'a TriMesh,
+    /// Meshes in the same coordinates that hide; their triangles have the numbers behind those of the mesh.
+    pub occluders: &'a [TriMesh],
+    /// The cameras.
+    pub cameras: &'a CameraSphere,
+    /// What pixels are counted by.
+    pub window: Window,
+    /// Who listens.
+    pub progress: &'a dyn Progress,
+}
+
 /// Casts rays from four points of one side of a triangle to every camera, against every other triangle, in `f64` and with no
 /// shortcut that could be wrong.
 ///
 /// Triangles block from both sides; of coincident triangles the one with the smaller number is in front.
 /// `None` for a degenerate triangle: no area, or too small or thin against the whole mesh to be seen at all.
-#[must_use]
-pub fn explain(
-    mesh: &TriMesh,
-    (triangle, side): (TriangleId, Side),
-    cameras: &CameraSphere,
-    window: Window,
-) -> Option<Explanation> {
+///
+/// # Errors
+/// [`crate::Error::Limit`] for an occluder that reaches too far, [`crate::Error::Cancelled`].
+pub fn explain(scene: Explaining<'_>, triangle: TriangleId, side: Side) -> Result<Option<Explanation>> {
+    let Explaining { mesh, cameras, window, .. } = scene;
     let frame = Frame::of(mesh);
-    let (area, front) = frame.area_and_normal(mesh, triangle)?;
+    let Some((area, front)) = frame.area_and_normal(mesh, triangle) else { return Ok(None) };
     let normal = if side == Side::Front { front } else { -front };
     let facing: Vec<(u32, DVec3)> =
         (0..).zip(cameras.directions().iter().copied()).filter(|(_, d)| d.dot(normal) > EDGE_ON).collect();
-    let nearest = nearest_blockers(mesh, &frame, triangle, &facing);
+    let obstacles = Obstacles::to(triangle, frame, scene)?;
+    let nearest = obstacles.nearest(&facing, scene.progress)?;
     let mut answers: Vec<CameraSight> =
         (0..).zip(cameras.directions()).map(|(v, d)| behind(v, d.dot(normal))).collect();
     for (&(camera, toward), blockers) in facing.iter().zip(&nearest) {
@@ -87,7 +104,7 @@ pub fn explain(
     }
     let seen = |answer: &CameraSight| answer.share * answer.cosine.max(0.0) * cameras.weight(answer.camera) as f64;
     let visibility = answers.iter().map(seen).sum::<f64>() / cameras.cosine_sum(normal);
-    Some(Explanation { visibility, blockers: count_blockers(&answers), cameras: answers })
+    Ok(Some(Explanation { visibility, blockers: count_blockers(&answers), cameras: answers }))
 }
 
 fn behind(camera: u32, cosine: f64) -> CameraSight {
@@ -111,41 +128,84 @@ fn answer(camera: u32, cosine: f64, blockers: &[Nearest; POINTS.len()], pixels: 
 type Nearest = Option<(f64, TriangleId)>;
 
 /// What blocks the rays from each point, camera by camera.
-fn nearest_blockers(
-    mesh: &TriMesh,
-    frame: &Frame,
+type Blockers = Vec<[Nearest; POINTS.len()]>;
+
+/// What may be in the way of rays from one triangle.
+struct Obstacles<'a> {
+    mesh: &'a TriMesh,
+    frame: Frame,
     own: TriangleId,
-    facing: &[(u32, DVec3)],
-) -> Vec<[Nearest; POINTS.len()]> {
-    let points = POINTS.map(|[u, v, w]| {
-        let [a, b, c] = mesh.corners(own).map(|p| frame.to_unit(p));
-        u * a + v * b + w * c
-    });
-    let nobody = || vec![[None; POINTS.len()]; facing.len()];
-    let add = |mut nearest: Vec<[Nearest; POINTS.len()]>, t: u32| {
-        let id = TriangleId(t);
+    /// Of the occluders.
+    sheets: Vec<(TriangleId, [DVec3; 3])>,
+}
+
+/// Obstacles between two looks at whether to stop.
+const BLOCK: usize = 1024;
+
+impl<'a> Obstacles<'a> {
+    fn to(own: TriangleId, frame: Frame, scene: Explaining<'a>) -> Result<Self> {
+        let behind = scene.mesh.triangle_count() as u32;
+        let occluders = Occluders::around(frame, scene.occluders)?;
+        let sheets = occluders.sheets().map(|(number, corners)| (TriangleId(behind + number), corners)).collect();
+        Ok(Self { mesh: scene.mesh, frame, own, sheets })
+    }
+
+    fn count(&self) -> usize {
+        self.mesh.triangle_count() + self.sheets.len()
+    }
+
+    fn at(&self, index: usize) -> Option<(TriangleId, [DVec3; 3])> {
+        if let Some(sheet) = index.checked_sub(self.mesh.triangle_count()) {
+            return self.sheets.get(sheet).copied();
+        }
+        let id = TriangleId(index as u32);
         // Degenerate triangles hide nothing, whoever looks.
-        if id != own && frame.area_and_normal(mesh, id).is_some() {
-            let corners = mesh.corners(id).map(|p| frame.to_unit(p));
-            for (k, &point) in points.iter().enumerate() {
-                let least = if id < own { -CONTACT } else { CONTACT };
-                let volumes = Volumes::of(corners.map(|p| p - point));
-                for (slot, &(_, toward)) in nearest.iter_mut().zip(facing) {
-                    let hit =
-                        volumes.crossing(toward).filter(|&distance| distance > least).map(|distance| (distance, id));
-                    slot[k] = nearer(slot[k], hit);
-                }
+        let is_solid = id != self.own && self.frame.area_and_normal(self.mesh, id).is_some();
+        is_solid.then(|| (id, self.mesh.corners(id).map(|p| self.frame.to_unit(p))))
+    }
+
+    fn nearest(&self, facing: &[(u32, DVec3)], progress: &dyn Progress) -> Result<Blockers> {
+        let [a, b, c] = self.mesh.corners(self.own).map(|p| self.frame.to_unit(p));
+        let points = POINTS.map(|[u, v, w]| u * a + v * b + w * c);
+        let nobody = || vec![[None; POINTS.len()]; facing.len()];
+        let (done, blocks) = (AtomicU64::new(0), self.count().div_ceil(BLOCK));
+        let add = |mut nearest: Blockers, block: usize| {
+            if !progress.is_cancelled() {
+                let block = BLOCK * block..self.count().min(BLOCK * (block + 1));
+                block.filter_map(|i| self.at(i)).for_each(|obstacle| self.add(obstacle, points, facing, &mut nearest));
+                progress.report("obstacles", done.fetch_add(1, Ordering::Relaxed) + 1, blocks as u64);
+            }
+            nearest
+        };
+        let found = (0..blocks).into_par_iter().fold(nobody, add).reduce(nobody, join);
+        progress.check()?;
+        Ok(found)
+    }
+
+    /// Takes the place of what is farther.
+    fn add(
+        &self,
+        (id, corners): (TriangleId, [DVec3; 3]),
+        points: [DVec3; POINTS.len()],
+        facing: &[(u32, DVec3)],
+        nearest: &mut [[Nearest; POINTS.len()]],
+    ) {
+        let least = if id < self.own { -CONTACT } else { CONTACT };
+        for (k, &point) in points.iter().enumerate() {
+            let volumes = Volumes::of(corners.map(|p| p - point));
+            for (slot, &(_, toward)) in nearest.iter_mut().zip(facing) {
+                let hit = volumes.crossing(toward).filter(|&distance| distance > least).map(|distance| (distance, id));
+                slot[k] = nearer(slot[k], hit);
             }
         }
-        nearest
-    };
-    let join = |mut a: Vec<[Nearest; POINTS.len()]>, b: Vec<[Nearest; POINTS.len()]>| {
-        for (a, b) in a.iter_mut().flatten().zip(b.into_iter().flatten()) {
-            *a = nearer(*a, b);
-        }
-        a
-    };
-    (0..mesh.triangle_count() as u32).into_par_iter().fold(nobody, add).reduce(nobody, join)
+    }
+}
+
+fn join(mut a: Blockers, b: Blockers) -> Blockers {
+    for (a, b) in a.iter_mut().flatten().zip(b.into_iter().flatten()) {
+        *a = nearer(*a, b);
+    }
+    a
 }
 
 /// The nearer of two; at equal distance the smaller number, so that threads do not matter.
@@ -203,8 +263,18 @@ mod tests {
 
     use super::*;
     use crate::camera::CameraWeights;
+    use crate::progress::{CancelFlag, Silent};
 
     const WINDOW: Window = Window { width: 480, half_width: 1.0 };
+
+    fn alone(mesh: &TriMesh, triangle: u32, side: Side, cameras: &CameraSphere) -> Explanation {
+        among(&[], mesh, triangle, side, cameras)
+    }
+
+    fn among(occluders: &[TriMesh], mesh: &TriMesh, t: u32, side: Side, cameras: &CameraSphere) -> Explanation {
+        let scene = Explaining { mesh, occluders, cameras, window: WINDOW, progress: &Silent };
+        explain(scene, TriangleId(t), side).unwrap().unwrap()
+    }
 
     /// A tiny triangle at the origin facing +z, and a triangular plate of half-width 3 in the plane z = 1, in three pieces
     /// around the axis: numbers 1, 2, 3.
@@ -237,7 +307,7 @@ mod tests {
         // Turned, so that no camera looks along a border between the pieces.
         let rotation = glam::DMat3::from_rotation_z(0.3) * glam::DMat3::from_rotation_x(0.2);
         let cameras = CameraSphere::octahedral(258, CameraWeights::Area).unwrap().rotated(rotation);
-        let found = explain(&mesh, (TriangleId(0), Side::Front), &cameras, WINDOW).unwrap();
+        let found = alone(&mesh, 0, Side::Front, &cameras);
         let (mut open, mut all) = (0.0, 0.0);
         for answer in &found.cameras {
             let d = cameras.directions()[answer.camera as usize];
@@ -261,7 +331,7 @@ mod tests {
     #[test]
     fn nothing_blocks_the_other_side() {
         let cameras = CameraSphere::octahedral(66, CameraWeights::Equal).unwrap();
-        let found = explain(&plate_above(), (TriangleId(0), Side::Back), &cameras, WINDOW).unwrap();
+        let found = alone(&plate_above(), 0, Side::Back, &cameras);
         assert!((found.visibility - 1.0).abs() < 1e-12);
         assert!(found.blockers.is_empty());
     }
@@ -275,17 +345,17 @@ mod tests {
         let mesh = TriMesh::new(corners, vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]]).unwrap();
         let cameras = CameraSphere::octahedral(6, CameraWeights::Equal).unwrap();
         let up = cameras.directions().iter().position(|d| d.z == 1.0).unwrap();
-        let floor = explain(&mesh, (TriangleId(0), Side::Front), &cameras, WINDOW).unwrap();
+        let floor = alone(&mesh, 0, Side::Front, &cameras);
         assert_eq!((floor.cameras[up].sight, floor.cameras[up].share), (Sight::Seen, 0.75));
         assert_eq!(floor.visibility, 0.75);
-        let lower = explain(&mesh, (TriangleId(2), Side::Front), &cameras, WINDOW).unwrap();
+        let lower = alone(&mesh, 2, Side::Front, &cameras);
         assert_eq!(lower.blockers, [(TriangleId(1), 1)]);
         let corner = shelf(0.5);
         let (mut corners, mut triangles) = mesh.into_parts();
         corners.extend(corner.map(DVec3::from));
         triangles.push([9, 10, 11]);
         let mesh = TriMesh::new(corners, triangles).unwrap();
-        let lowest = explain(&mesh, (TriangleId(3), Side::Front), &cameras, WINDOW).unwrap();
+        let lowest = alone(&mesh, 3, Side::Front, &cameras);
         assert_eq!(lowest.blockers, [(TriangleId(2), 1)], "the nearest, not the first");
     }
 
@@ -294,8 +364,44 @@ mod tests {
         let corners = [[0.0, 0.0, 0.0], [0.7, 0.1, 0.3], [0.2, 0.9, 0.1]].map(DVec3::from).to_vec();
         let mesh = TriMesh::new(corners, vec![[0, 1, 2], [1, 2, 0]]).unwrap();
         let cameras = CameraSphere::octahedral(66, CameraWeights::Equal).unwrap();
-        let v = |t| explain(&mesh, (TriangleId(t), Side::Front), &cameras, WINDOW).unwrap().visibility;
+        let v = |t| alone(&mesh, t, Side::Front, &cameras).visibility;
         assert!((v(0) - 1.0).abs() < 1e-12);
         assert_eq!(v(1), 0.0);
+    }
+
+    /// The plate of [`plate_above`] hides the same cameras whether it belongs to the mesh or stands around it.
+    #[test]
+    fn an_occluder_hides_as_a_part_does_and_has_the_numbers_behind_the_mesh() {
+        let whole = plate_above();
+        let part = |triangles: &[[u32; 3]]| TriMesh::new(whole.positions().to_vec(), triangles.to_vec()).unwrap();
+        // Two of its pieces are the mesh's, so that the frame is the same.
+        let (mesh, plate) = (part(&whole.triangles()[..3]), part(&whole.triangles()[3..]));
+        let rotation = glam::DMat3::from_rotation_z(0.3) * glam::DMat3::from_rotation_x(0.2);
+        let cameras = CameraSphere::octahedral(258, CameraWeights::Area).unwrap().rotated(rotation);
+        let found = among(&[plate], &mesh, 0, Side::Front, &cameras);
+        assert!(found.blockers.iter().any(|&(id, _)| id == TriangleId(3)));
+        assert_eq!(found.blockers, alone(&whole, 0, Side::Front, &cameras).blockers);
+    }
+
+    #[test]
+    fn what_lies_on_an_occluder_is_hidden_by_it_from_both_sides() {
+        let floor = [[-3.0, -3.0, 0.0], [3.0, -3.0, 0.0], [0.0, 3.0, 0.0]].map(DVec3::from).to_vec();
+        let floor = TriMesh::new(floor, vec![[0, 1, 2]]).unwrap();
+        // All cameras of six but the two along z are edge-on.
+        let cameras = CameraSphere::octahedral(6, CameraWeights::Equal).unwrap();
+        for side in [Side::Front, Side::Back] {
+            let found = among(std::slice::from_ref(&floor), &plate_above(), 0, side, &cameras);
+            assert_eq!((found.visibility, &found.blockers[..]), (0.0, &[(TriangleId(4), 1)][..]));
+        }
+    }
+
+    #[test]
+    fn an_explanation_can_be_stopped() {
+        let cameras = CameraSphere::octahedral(6, CameraWeights::Equal).unwrap();
+        let stop = CancelFlag::default();
+        stop.cancel();
+        let mesh = plate_above();
+        let scene = Explaining { mesh: &mesh, occluders: &[], cameras: &cameras, window: WINDOW, progress: &stop };
+        assert!(matches!(explain(scene, TriangleId(0), Side::Front), Err(crate::Error::Cancelled)));
     }
 }

@@ -32,7 +32,7 @@ mod surface;
 pub use convergence::{NestedVisibility, mean_difference, nested_resolution, nested_visibility, surface_mean};
 pub use coverage::CoverageCounts;
 pub use diagram::{DiagramRecorder, VisibilityDiagram};
-pub use explain::{CameraSight, Explanation, Sight, explain};
+pub use explain::{CameraSight, Explaining, Explanation, Sight, explain};
 pub use fractions::visible_fractions;
 pub use importance::{Hidden, importance};
 pub use kept::{KeptFault, KeptMeasurement, MeasurementKey};

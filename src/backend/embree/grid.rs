@@ -6,7 +6,7 @@ use crate::backend::ItemBuffers;
 use crate::backend::embree::EmbreeScene;
 use crate::backend::embree::scene::{Crossing, Line};
 use crate::camera::{View, Window};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::raster::{Hit, ItemBufferPair, Side, depth_step};
 
 /// Rays of a packet: pixels side by side in a row.
@@ -93,12 +93,7 @@ impl<'a> Lines<'a> {
     fn new(view: &'a View, extent: f64) -> Result<Self> {
         let reach = MARGIN * extent.max(view.window.half_width);
         if reach * f64::from(f32::EPSILON) * PIXEL_OVER_ROUNDING > view.window.pixel_size() {
-            return Err(Error::Limit {
-                message: format!(
-                    "a mesh {:.0} times larger than the picture cannot be drawn; are the units the same?",
-                    extent / view.window.half_width
-                ),
-            });
+            return Err(view.window.too_small_for(extent));
         }
         let direction = (-view.toward).as_vec3();
         // Back along the rounded direction, so that the line still goes through the pixel centre.

@@ -136,6 +136,9 @@ impl<'a> Search<'a> {
         let load = Workload { window, memory_limit, phase: "differences", progress };
         let views: Vec<View> = cameras.axes().iter().map(|axis| View::along(axis, window)).collect();
         let [first, second] = if drawn[0] { [0, 1] } else { [1, 0] };
+        // Occluders, which have the numbers behind the mesh's, hide and are not compared.
+        let triangles = self.diagrams[0].triangles();
+        let of_mesh = |hit: Option<Hit>| hit.filter(|hit| (hit.triangle.0 as usize) < triangles);
         draw_all(self.subjects[first].machine(), &views, load, |number, buffers| {
             let mut others = ItemBufferPair::new(window);
             if drawn[second] {
@@ -145,11 +148,11 @@ impl<'a> Search<'a> {
             let pair = if first == 0 { [buffers, &others] } else { [&others, buffers] };
             let axis = cameras.axes()[number];
             if let Some(camera) = axis.near {
-                let hits = pair.map(|b| b.near().collect());
+                let hits = pair.map(|b| b.near().map(of_mesh).collect());
                 self.look(&views[number], &Sight { camera, weight: cameras.weight(camera), hits });
             }
             if let Some(camera) = axis.far {
-                let hits = pair.map(|b| b.far().collect());
+                let hits = pair.map(|b| b.far().map(of_mesh).collect());
                 self.look(&views[number], &Sight { camera, weight: cameras.weight(camera), hits });
             }
             Ok(())
