@@ -114,5 +114,23 @@ impl Error {
     }
 }
 
+/// A number as a message quotes it: all its digits, but none that only say how large it is (`1e200`).
+#[must_use]
+pub fn short_number(number: f64) -> String {
+    let is_plain = number == 0.0 || (1e-6..1e15).contains(&number.abs()) || !number.is_finite();
+    if is_plain { number.to_string() } else { format!("{number:e}") }
+}
+
 /// Result with the crate's [`Error`].
 pub type Result<T> = std::result::Result<T, Error>;
+
+#[cfg(test)]
+mod tests {
+    use super::short_number;
+
+    #[test]
+    fn numbers_in_messages_stay_short() {
+        let shown = [0.0, -0.25, 5000.0, 1e200, -1e-200, f64::INFINITY, f64::MAX].map(short_number);
+        assert_eq!(shown, ["0", "-0.25", "5000", "1e200", "-1e-200", "inf", "1.7976931348623157e308"]);
+    }
+}

@@ -48,7 +48,7 @@ use crate::io::{self, Attributes, Loaded, WriteOptions};
 use crate::pipeline::observation::Observation;
 use crate::pipeline::surroundings::Surroundings;
 use crate::progress::{CancelFlag, Progress, Silent};
-use crate::visibility::{Hidden, Look, MeasureOptions, Visibility};
+use crate::visibility::{Hidden, KeptFault, Look, MeasureOptions, Visibility};
 
 /// Reads a mesh, looks at it, simplifies it where nobody looks, writes every level.
 ///
@@ -69,7 +69,7 @@ pub fn run_simplify(request: &SimplifyRequest, observer: &dyn Observer) -> Resul
     let look = match request.metric {
         Metric::Visibility => {
             let mut observation =
-                Observation::of(occluders.around(&mesh)?, &request.measure, request.cache.as_deref())?;
+                Observation::of(occluders.around(&mesh)?, &request.measure, request.cache.as_deref(), observer)?;
             let visibility = observation.visibility(observer)?;
             seconds.visibility = clock.lap();
             let hidden = observation.hidden(request.hidden, &visibility, observer)?;
@@ -100,6 +100,14 @@ pub trait Observer: Progress {
     /// # Errors
     /// Whatever the observer decides.
     fn mesh_read(&self, _path: &Path, _loaded: &Loaded) -> Result<()> {
+        Ok(())
+    }
+
+    /// What a file of the cache's directory should keep cannot be used; the mesh is looked at again.
+    ///
+    /// # Errors
+    /// Whatever the observer decides.
+    fn kept_look_unusable(&self, _file: &Path, _fault: KeptFault) -> Result<()> {
         Ok(())
     }
 

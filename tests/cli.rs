@@ -195,6 +195,63 @@ fn wrong_sizes_say_what_was_meant() {
 }
 
 #[test]
+fn numbers_in_messages_are_as_short_as_they_can_be() {
+    /// A message and the longest number of 16 digits in it.
+    const LINE: usize = 160;
+    let home = directory();
+    let nines = "9".repeat(200);
+    fs::write(home.path().join("far.off"), format!("OFF\n3 1 0\n0 0 0\n{nines} 0 0\n0 1 0\n3 0 1 2\n")).unwrap();
+    fs::write(home.path().join("c.txt"), format!("1 0 0\n0 1 0 -{nines}\n")).unwrap();
+    let simplify = ["simplify", "cube.off", "-o", "x.ply", "-r", "0.5"];
+    for arguments in [
+        &["info", "far.off"][..],
+        &["measure", "cube.off", "--camera-file", "c.txt"],
+        &[&simplify[..], &["--boundary", "1e300"]].concat(),
+        &[&simplify[..], &["--visibility-power", &nines]].concat(),
+    ] {
+        let ended = run(home.path(), arguments);
+        assert!(ended.code > 0 && ended.err.lines().all(|line| line.len() < LINE), "{}", ended.err);
+        assert!(ended.err.contains("1e200") || ended.err.contains("1e300"), "{}", ended.err);
+    }
+    // What the user wrote is quoted as it is, and once.
+    let ended = run(home.path(), &["simplify", "cube.off", "-o", "x.ply", "-r", &nines]);
+    assert!(ended.err.lines().all(|line| line.len() < LINE + nines.len()), "{}", ended.err);
+}
+
+#[test]
+fn a_target_that_held_from_the_start_is_told() {
+    let home = directory();
+    let simplify = |more: &[&str]| {
+        let all = [&["simplify", "cube.off", "-o", "x.ply", "--force"][..], &SMALL, more].concat();
+        run(home.path(), &all)
+    };
+    let ended = simplify(&["-t", "50", "--json"]);
+    let object: Value = serde_json::from_str(&ended.out).unwrap();
+    let warning = "x.ply: 12 triangles were there to begin with, not 50: nothing was collapsed";
+    assert_eq!((&object["levels"][0]["stop"], &object["warnings"]), (&"target".into(), &serde_json::json!([warning])));
+    assert_eq!(ended.err, format!("warning: {warning}\n"));
+    assert!(simplify(&["-t", "50"]).out.contains("fewer than that to begin with"));
+    assert_eq!(simplify(&["-t", "12"]).err, "", "exactly what was asked for");
+}
+
+#[test]
+fn limits_and_costs_are_told_in_numbers_that_say_something() {
+    let home = directory();
+    let ended = run(home.path(), &["measure", "cube.off", "--memory-limit", "1k"]);
+    assert_eq!(
+        (ended.code, ended.err.starts_with("error: --memory-limit 1 KiB: 12 triangles")),
+        (5, true),
+        "{}",
+        ended.err
+    );
+    let costly = ["measure", "cube.off", "--resolution", "16384", "--threads", "1"];
+    let ended = run(home.path(), &[&costly[..], &["--memory-limit", "2G"]].concat());
+    assert_eq!((ended.code, ended.err.contains("need about 4.0 GiB")), (5, true), "{}", ended.err);
+    let ended = run(home.path(), &[&costly[..], &["--time-limit", "0.000001"]].concat());
+    assert!(ended.err.contains("this takes about 9 min; fewer --cameras or a smaller --resolution"), "{}", ended.err);
+}
+
+#[test]
 fn preserving_topology_keeps_closed_meshes_closed() {
     let home = directory();
     let ended = run(
@@ -480,6 +537,18 @@ fn verify_refuses_what_it_cannot_compare() {
 }
 
 #[test]
+fn verify_speaks_of_its_own_flags_and_offers_what_works_here() {
+    let home = directory();
+    let ended = run(home.path(), &["verify", "cube.off", "--backends", "surface@raster,raster"]);
+    assert_eq!(ended.code, 2);
+    let message = "--backends: surface@raster: surface needs rays, which raster does not cast; name surface@embree";
+    assert!(ended.err.contains(message), "{}", ended.err);
+    let ended = run(home.path(), &["verify", "cube.off", "--backends", "foo,raster"]);
+    assert!(ended.err.contains("neither a backend (raster") && !ended.err.contains("gpu"), "{}", ended.err);
+    assert_eq!(ended.code, 2);
+}
+
+#[test]
 fn verify_draws_where_two_differ_and_overwrites_nothing() {
     let home = directory();
     let arguments = [&["verify", "cube.off", "--backends", "raster,raster", "-o", "pictures"], &SMALL[..]].concat();
@@ -610,6 +679,8 @@ fn cameras_that_cannot_look_are_refused_before_the_work() {
         assert_eq!(ended.code, 3, "{text}");
         assert!(ended.err.starts_with(message), "{}", ended.err);
     }
+    let many = list(&"1 0 0\n".repeat(2_000_000));
+    assert_eq!(many.err, "error: c.txt, line 65537: this is camera 65537; at most 65536 can look\n");
     let usage = |flags: &[&str]| {
         let ended = run(home.path(), &[&["measure", "cube.off"], flags].concat());
         assert_eq!(ended.code, 2, "{flags:?}");
@@ -722,7 +793,7 @@ fn convergence_is_written_whole_and_shows_both_weights() {
     assert_eq!(again.code, 4, "nothing is overwritten without --force");
     let other = [&["study", "convergence", "cube.off", "-o", "other", "--time-limit", "0.000001"], &small[..]].concat();
     assert_eq!(run(home.path(), &other).code, 5);
-    assert!(names(&home.path().join("other")).is_empty());
+    assert!(!home.path().join("other").exists(), "no empty directory is left");
 }
 
 #[test]

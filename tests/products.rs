@@ -168,11 +168,51 @@ fn a_kept_look_at_another_mesh_or_a_damaged_one_is_an_error() {
 }
 
 #[test]
+fn a_damaged_look_in_a_directory_is_taken_again() {
+    let home = directory();
+    let measure = |more: &[&str]| {
+        run(home.path(), &[&["measure", "covered.off", "--cache", "kept", "--json"][..], &SMALL, more].concat())
+    };
+    let cache_of = |ended: &Ended| serde_json::from_str::<Value>(&ended.out).unwrap()["cache"].clone();
+    assert_eq!(measure(&[]).code, 0);
+    let file = home.path().join("kept").join(&names(&home.path().join("kept"))[0]);
+    let whole = fs::read(&file).unwrap();
+    let foreign = b"not what it was".to_vec();
+    for damaged in [whole[..whole.len() - 1].to_vec(), whole[..20].to_vec(), Vec::new(), foreign] {
+        fs::write(&file, &damaged).unwrap();
+        let strict = measure(&["--strict"]);
+        assert_eq!((strict.code, fs::read(&file).unwrap()), (3, damaged), "{}", strict.err);
+        let ended = measure(&[]);
+        assert_eq!((ended.code, cache_of(&ended)), (0, "miss".into()), "{}", ended.err);
+        let warns = |line: &str| line.starts_with("warning: kept/") && line.ends_with("; the mesh is looked at again");
+        assert_eq!(ended.err.lines().filter(|line| warns(line)).count(), 1, "{}", ended.err);
+        assert_eq!(fs::read(&file).unwrap(), whole);
+        assert_eq!(cache_of(&measure(&[])), "hit");
+    }
+}
+
+#[test]
+fn a_seed_that_nothing_uses_does_not_part_kept_looks() {
+    let home = directory();
+    let cache = |more: &[&str]| {
+        json(home.path(), &[&["measure", "covered.off", "--cache", "kept", "--json"], more].concat())["cache"].clone()
+    };
+    for pictures in [["--estimator", "coverage"], ["--estimator", "item-buffer"]] {
+        let all = |seed| [&SMALL[..], &pictures, &["--seed", seed]].concat();
+        assert_eq!([cache(&all("1")), cache(&all("2"))], ["miss", "hit"], "{pictures:?}");
+    }
+    if cfg!(feature = "embree") {
+        let rays = |seed| cache(&["--estimator", "hemisphere", "--backend", "embree", "--seed", seed]);
+        assert_eq!([rays("1"), rays("2")], ["miss", "miss"]);
+    }
+}
+
+#[test]
 fn an_interrupted_run_keeps_nothing() {
     let home = directory();
     let ended = run(home.path(), &["measure", GEARBOX, "--cache", "kept", "--time-limit", "0.3", "--cameras", "4098"]);
     assert_eq!(ended.code, 5, "{}", ended.err);
-    assert!(names(home.path()).iter().all(|name| name != "kept" || names(&home.path().join("kept")).is_empty()));
+    assert_eq!(names(home.path()), ["covered.off"], "no empty directory either");
 }
 
 #[test]

@@ -6,7 +6,7 @@ use clap::Args;
 use outsight::Result;
 use outsight::pipeline::cache_is_file;
 
-use super::outputs::check_place;
+use super::outputs::{check_place, check_place_to_be};
 
 /// Stands in for `--cache` where that is not given. Off unless asked for: nothing is written where nobody looks for it.
 const VARIABLE: &str = "OUTSIGHT_CACHE";
@@ -30,8 +30,8 @@ impl CacheFlags {
         let Some(cache) = self.cache.clone().or_else(variable) else { return Ok(None) };
         if cache_is_file(&cache) {
             check_place(&cache, true)?;
-        } else if cache.is_dir() {
-            check_place(&cache.join("any.seen"), true)?;
+        } else {
+            check_place_to_be(&cache.join("any.seen"), true)?;
         }
         Ok(Some(cache))
     }

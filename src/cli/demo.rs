@@ -95,7 +95,7 @@ impl Files {
 pub fn run(_flags: &Flags, console: &Console) -> std::result::Result<(), Failure> {
     let files = prepare(Path::new(DIRECTORY))?;
     let looking = presets::measure_options(&LookingFlags::default(), &console.global)?;
-    let watch = Watch::new(console, Task::Simplify { resolution: 0 }).deleting_knowingly(true);
+    let watch = Watch::new(console, Task::Simplify { resolution: 0, cameras: 0 }).deleting_knowingly(true);
 
     console.note("measuring: which triangles of the gearbox can be seen from outside?");
     let measure = pipeline::measure_file(&measure_request(&files, &looking), &watch)?;

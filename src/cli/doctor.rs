@@ -15,7 +15,7 @@ use super::failure::Failure;
 use super::flags::LookingFlags;
 use super::presets;
 use super::system;
-use super::text::{megabytes, pairs};
+use super::text::{memory, pairs};
 
 /// How far the visibility of a cube may be from 1: the spread of the sum over 258 cameras is 0.8 %, most of it on the
 /// coordinate axes.
@@ -119,7 +119,7 @@ fn cube() -> TriMesh {
 
 fn text(report: &Report) -> String {
     let memory = match (report.memory_mb, report.memory_available_mb) {
-        (Some(all), Some(free)) => format!("{}, {} available", megabytes(all << 20), megabytes(free << 20)),
+        (Some(all), Some(free)) => format!("{}, {} available", memory(all << 20), memory(free << 20)),
         _ => "unknown on this system".to_owned(),
     };
     let mut rows = vec![

@@ -1,5 +1,6 @@
 //! Estimates of memory and time, made before the work.
 
+use outsight::Result;
 use outsight::visibility::{MeasureOptions, VisibilityDiagram, nested_resolution};
 
 /// What a run does.
@@ -11,6 +12,8 @@ pub enum Task {
     Measure {
         /// Pixels along the side; 0 where not known before reading.
         resolution: u32,
+        /// Cameras; 0 where none takes pictures.
+        cameras: usize,
     },
     /// Measures, and writes down which camera sees which triangle.
     Diagram {
@@ -32,6 +35,8 @@ pub enum Task {
     Simplify {
         /// Pixels along the side; 0 where not known before reading.
         resolution: u32,
+        /// Cameras; 0 where none takes pictures.
+        cameras: usize,
     },
     /// Measures from many patterns at once.
     Study {
@@ -65,17 +70,17 @@ const PIXEL_BYTES: u64 = 16;
 pub fn memory_bytes(task: Task, triangles: usize) -> u64 {
     let triangles = triangles as u64;
     let images = |resolution: u32| {
-        let side = u64::from(if resolution == 0 { chosen_resolution(triangles) } else { resolution });
+        let side = u64::from(resolution_or_chosen(resolution, triangles));
         PIXEL_BYTES * side * side * rayon::current_num_threads() as u64
     };
     let working = match task {
         Task::Read => 0,
-        Task::Measure { resolution } => MEASURE_BYTES * triangles + images(resolution),
+        Task::Measure { resolution, .. } => MEASURE_BYTES * triangles + images(resolution),
         Task::Diagram { resolution, cameras, fractions } => {
             let row = cameras.div_ceil(64) * 8 + if fractions { cameras } else { 0 };
             (MEASURE_BYTES + row as u64) * triangles + images(resolution)
         }
-        Task::Simplify { resolution } => SIMPLIFY_BYTES.max(MEASURE_BYTES) * triangles + images(resolution),
+        Task::Simplify { resolution, .. } => SIMPLIFY_BYTES.max(MEASURE_BYTES) * triangles + images(resolution),
         Task::Study { resolution } => {
             let resolution = resolution.unwrap_or_else(|| nested_resolution(triangles as usize));
             (MEASURE_BYTES + STUDY_BYTES) * triangles + images(resolution)
@@ -89,9 +94,17 @@ pub fn memory_bytes(task: Task, triangles: usize) -> u64 {
     FLOOR_BYTES + READ_BYTES * triangles + working
 }
 
-/// Resolution that measuring chooses by itself.
-fn chosen_resolution(triangles: u64) -> u32 {
-    MeasureOptions::default().resolution_for(triangles as usize)
+/// Cameras that take pictures under these options.
+///
+/// # Errors
+/// As [`MeasureOptions::camera_sphere`].
+pub fn cameras_drawing(options: &MeasureOptions) -> Result<usize> {
+    if options.estimator.draws() { Ok(options.camera_sphere()?.count()) } else { Ok(0) }
+}
+
+/// Resolution that measuring chooses by itself where none is given.
+fn resolution_or_chosen(resolution: u32, triangles: u64) -> u32 {
+    if resolution == 0 { MeasureOptions::default().resolution_for(triangles as usize) } else { resolution }
 }
 
 /// Seconds of one thread per triangle and camera axis, measured on scans of 0.1 to 1 million triangles.
@@ -101,9 +114,23 @@ const SECONDS_PER_PIXEL_AXIS: f64 = 1.5e-8;
 /// Triangles that one thread takes away in a second.
 const COLLAPSED_TRIANGLES_PER_SECOND: f64 = 250_000.0;
 
-/// Seconds to measure a mesh of that many triangles from `cameras` cameras, on the threads of this run. Rough.
-pub fn measure_seconds(triangles: usize, cameras: usize) -> f64 {
-    let side = f64::from(chosen_resolution(triangles as u64));
+/// Seconds of `task` on a mesh of that many triangles, on the threads of this run, where pictures take most of the time.
+/// Rough; for a simplification to a small share of the triangles.
+pub fn seconds(task: Task, triangles: usize) -> Option<f64> {
+    match task {
+        Task::Measure { resolution, cameras } | Task::Diagram { resolution, cameras, .. } => {
+            Some(measure_seconds(triangles, cameras, resolution))
+        }
+        Task::Simplify { resolution, cameras } => {
+            let looking = (1.0 + LOOKING_AGAIN) * measure_seconds(triangles, cameras, resolution);
+            Some(looking + triangles as f64 / COLLAPSED_TRIANGLES_PER_SECOND)
+        }
+        Task::Read | Task::Verify { .. } | Task::Study { .. } | Task::Compare => None,
+    }
+}
+
+fn measure_seconds(triangles: usize, cameras: usize, resolution: u32) -> f64 {
+    let side = f64::from(resolution_or_chosen(resolution, triangles as u64));
     let axis = SECONDS_PER_TRIANGLE_AXIS * triangles as f64 + SECONDS_PER_PIXEL_AXIS * side * side;
     axis * cameras as f64 / 2.0 / rayon::current_num_threads() as f64
 }
@@ -111,9 +138,3 @@ pub fn measure_seconds(triangles: usize, cameras: usize) -> f64 {
 /// Looking again for hidden triangles takes this many times as long as measuring: 2 on a mesh that hides little, 14 on
 /// one that hides much behind slits.
 const LOOKING_AGAIN: f64 = 7.0;
-
-/// Seconds to simplify a mesh of that many triangles to a small share of them, measuring included. Rough.
-pub fn simplify_seconds(triangles: usize, cameras: usize) -> f64 {
-    let looking = (1.0 + LOOKING_AGAIN) * measure_seconds(triangles, cameras);
-    looking + triangles as f64 / COLLAPSED_TRIANGLES_PER_SECOND
-}

@@ -14,7 +14,7 @@ use super::console::Console;
 use super::estimate::{self, Task};
 use super::failure::Failure;
 use super::flags::InputFlags;
-use super::text::{count, duration, megabytes, pairs};
+use super::text::{count, duration, memory, pairs};
 use super::watch::{Found, Watch};
 
 /// Cameras that the estimate of time is for, the default of `measure`.
@@ -76,7 +76,10 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
 
 fn report(path: &Path, loaded: &Loaded) -> Report {
     let triangles = loaded.mesh.triangle_count();
-    let peak = estimate::memory_bytes(Task::Simplify { resolution: 0 }, triangles);
+    let measure = Task::Measure { resolution: 0, cameras: ESTIMATED_CAMERAS };
+    let simplify = Task::Simplify { resolution: 0, cameras: ESTIMATED_CAMERAS };
+    let seconds = |task| estimate::seconds(task, triangles).unwrap_or_default();
+    let peak = estimate::memory_bytes(simplify, triangles);
     Report {
         found: Found::new(path, loaded),
         format: loaded.format.extension(),
@@ -85,8 +88,8 @@ fn report(path: &Path, loaded: &Loaded) -> Report {
         topology: topology(&loaded.mesh),
         size: size(&loaded.mesh),
         estimate: Estimate {
-            measure_seconds: estimate::measure_seconds(triangles, ESTIMATED_CAMERAS),
-            simplify_seconds: estimate::simplify_seconds(triangles, ESTIMATED_CAMERAS),
+            measure_seconds: seconds(measure),
+            simplify_seconds: seconds(simplify),
             peak_mb: peak as f64 / f64::from(1 << 20),
         },
         welded: loaded.welded,
@@ -136,7 +139,7 @@ fn text(path: &Path, report: &Report) -> String {
         ("area", format!("{:.6}", size.area)),
         ("measure takes about", format!("{} from {ESTIMATED_CAMERAS} cameras", duration(estimate.measure_seconds))),
         ("simplify takes about", duration(estimate.simplify_seconds)),
-        ("memory about", megabytes((estimate.peak_mb * f64::from(1 << 20)) as u64)),
+        ("memory about", memory((estimate.peak_mb * f64::from(1 << 20)) as u64)),
     ];
     if let Some(welded) = report.welded {
         rows.push(("vertices welded", count(welded)));

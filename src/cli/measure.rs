@@ -11,7 +11,7 @@ use serde_json::Value;
 
 use super::cache::{CacheFlags, reused};
 use super::console::Console;
-use super::estimate::Task;
+use super::estimate::{Task, cameras_drawing};
 use super::failure::Failure;
 use super::flags::{ColourMapName, InputFlags, LookingFlags, OccluderFlags};
 use super::in_force;
@@ -112,7 +112,9 @@ fn check_outputs(request: &MeasureRequest) -> outsight::Result<()> {
 
 fn task(request: &MeasureRequest) -> outsight::Result<Task> {
     let resolution = request.measure.resolution.unwrap_or(0);
-    let Some(diagram) = &request.diagram else { return Ok(Task::Measure { resolution }) };
+    let Some(diagram) = &request.diagram else {
+        return Ok(Task::Measure { resolution, cameras: cameras_drawing(&request.measure)? });
+    };
     let cameras = request.measure.camera_sphere()?.count();
     Ok(Task::Diagram { resolution, cameras, fractions: diagram.fractions })
 }

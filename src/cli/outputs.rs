@@ -95,6 +95,19 @@ pub fn check_place(path: &Path, force: bool) -> Result<()> {
     })
 }
 
+/// Does the same for a file whose directory will be made where there is none.
+///
+/// # Errors
+/// [`Error::Write`].
+pub fn check_place_to_be(path: &Path, force: bool) -> Result<()> {
+    match path.parent() {
+        Some(directory) if !directory.as_os_str().is_empty() && !directory.exists() => {
+            check_place_to_be(directory, true)
+        }
+        _ => check_place(path, force),
+    }
+}
+
 fn check_ending(output: Planned<'_>) -> Result<()> {
     let (base, compressed) = without_compression(output.path);
     // A hidden file such as `.ply` has a name and no ending.

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::cache::CacheFlags;
 use super::console::Console;
-use super::estimate::Task;
+use super::estimate::{Task, cameras_drawing};
 use super::failure::Failure;
 use super::flags::{ColourMapName, InputFlags, LookingFlags, UpFlags, names};
 use super::outputs::{self, Kind, Planned};
@@ -75,7 +75,8 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
     outputs::check(planned, &[&request.input], request.force)?;
     let heat = request.style == Style::Heat;
     let resolution = request.measure.resolution.unwrap_or(0);
-    let task = if heat { Task::Measure { resolution } } else { Task::Read };
+    let cameras = cameras_drawing(&request.measure)?;
+    let task = if heat { Task::Measure { resolution, cameras } } else { Task::Read };
     render_file(&request, &Watch::new(console, task))?;
     let style = if heat { "heat" } else { "flat" };
     let report = Report { file: &request.output, style, size: request.size, camera: request.camera };

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args};
 use outsight::Error;
-use outsight::pipeline::{LevelReport, LevelRequest, SimplifyReport, SimplifyRequest, run_simplify};
+use outsight::pipeline::{LevelReport, LevelRequest, Metric, SimplifyReport, SimplifyRequest, run_simplify};
 use outsight::simplify::{SimplifyOptions, Target};
 use serde::Serialize;
 use serde_json::Value;
@@ -12,7 +12,7 @@ use serde_json::Value;
 use super::cache::{CacheFlags, reused};
 use super::collapsing::CollapseFlags;
 use super::console::Console;
-use super::estimate::Task;
+use super::estimate::{Task, cameras_drawing};
 use super::failure::Failure;
 use super::flags::{FormatName, InputFlags, LookingFlags, OccluderFlags};
 use super::in_force;
@@ -73,15 +73,12 @@ struct Object<'a> {
 pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
     let request = request(flags, console)?;
     check_outputs(&request, console.global.json)?;
-    let task = Task::Simplify { resolution: request.measure.resolution.unwrap_or(0) };
+    let looks = request.metric == Metric::Visibility;
+    let cameras = if looks { cameras_drawing(&request.measure)? } else { 0 };
+    let task = Task::Simplify { resolution: request.measure.resolution.unwrap_or(0), cameras };
     let watch = Watch::new(console, task).writing_mesh(true).deleting_knowingly(flags.collapse.hidden.is_some());
     let report = run_simplify(&request, &watch)?;
-    for level in report.levels.iter().filter(|level| level.stop == "queue_empty") {
-        if let Some(target) = level.target {
-            let (file, reached, wanted) = (level.file.display(), count(level.output), count(target));
-            console.announce(&format!("{file}: {reached} triangles instead of {wanted}: nothing more may collapse"));
-        }
-    }
+    report.levels.iter().filter_map(|level| falls_short(level, &report)).for_each(|message| console.announce(&message));
     let object = Object {
         report: &report,
         peak_mb: peak_mib(),
@@ -153,7 +150,7 @@ fn text(report: &SimplifyReport) -> String {
             count(level.output),
             format!("{:.2} %", 100.0 * level.output as f64 / report.triangles as f64),
             significant(level.error),
-            stop_in_words(level).to_owned(),
+            stop_in_words(level, report).to_owned(),
         ]
     };
     let rows: Vec<Vec<String>> = report.levels.iter().map(row).collect();
@@ -173,14 +170,28 @@ fn text(report: &SimplifyReport) -> String {
     )
 }
 
-/// What a `stop` of the report means to its reader.
-fn stop_in_words(level: &LevelReport) -> &'static str {
-    /// One collapse takes away this many triangles at most, but for pairs that it cancels.
-    const COLLAPSE: usize = 8;
+/// What a user should know of a level that is not as large as was asked for.
+fn falls_short(level: &LevelReport, report: &SimplifyReport) -> Option<String> {
+    let (file, reached, target) = (level.file.display(), count(level.output), level.target?);
+    let wanted = count(target);
     match level.stop {
-        "target" if level.target.is_some_and(|target| level.output + COLLAPSE < target) => {
-            "fewer than that to begin with"
+        "queue_empty" => Some(format!("{file}: {reached} triangles instead of {wanted}: nothing more may collapse")),
+        "target" if nothing_to_do(level, report) => {
+            Some(format!("{file}: {reached} triangles were there to begin with, not {wanted}: nothing was collapsed"))
         }
+        _ => None,
+    }
+}
+
+/// Whether there were fewer triangles than asked for before the first collapse, hidden ones apart.
+fn nothing_to_do(level: &LevelReport, report: &SimplifyReport) -> bool {
+    level.target.is_some_and(|target| report.triangles - report.hidden_deleted < target)
+}
+
+/// What a `stop` of the report means to its reader.
+fn stop_in_words(level: &LevelReport, report: &SimplifyReport) -> &'static str {
+    match level.stop {
+        "target" if nothing_to_do(level, report) => "fewer than that to begin with",
         "target" => "target reached",
         "error" => "error bound",
         "queue_empty" => "no collapse left",

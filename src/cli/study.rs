@@ -101,7 +101,9 @@ fn convergence(flags: &ConvergenceFlags, console: &Console) -> std::result::Resu
     let force = console.global.force;
     let against = flags.reference()?;
     against.check()?;
-    let [json, csv, svg] = prepare(&flags.output, ["convergence.json", "convergence.csv", "convergence.svg"], force)?;
+    let files = ["convergence.json", "convergence.csv", "convergence.svg"].map(|name| flags.output.join(name));
+    files.iter().try_for_each(|file| outputs::check_place_to_be(file, force))?;
+    let [json, csv, svg] = files;
     let request = ConvergenceRequest {
         inputs: flags.meshes.clone(),
         read: flags.reading.options(&console.global),
@@ -115,19 +117,10 @@ fn convergence(flags: &ConvergenceFlags, console: &Console) -> std::result::Resu
     let object = Object { report: &report, peak_mb: peak_mib(), occluders: &request.occluders };
     let text_of_json = console.to_json(&object)?;
     let picture = report.plot().to_svg().map_err(|e| Error::Write { path: svg.clone(), message: e.to_string() })?;
-    io::write_atomic(&json, force, |out| out.write_all(text_of_json.as_bytes()))?;
+    io::write_atomic_in_directory(&json, force, |out| out.write_all(text_of_json.as_bytes()))?;
     io::write_atomic(&csv, force, |out| report.write_csv(out))?;
     io::write_atomic(&svg, force, |out| out.write_all(picture.as_bytes()))?;
     console.result(&object, &text(&report, &flags.output), true)
-}
-
-/// Makes the directory, and checks that the files can be written before the long work.
-fn prepare<const N: usize>(directory: &Path, names: [&str; N], force: bool) -> Result<[PathBuf; N]> {
-    let fail = |e: std::io::Error| Error::Write { path: directory.to_owned(), message: e.to_string() };
-    std::fs::create_dir_all(directory).map_err(fail)?;
-    let files = names.map(|name| directory.join(name));
-    files.iter().try_for_each(|file| outputs::check_place(file, force))?;
-    Ok(files)
 }
 
 fn text(report: &ConvergenceReport, directory: &Path) -> String {

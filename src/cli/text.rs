@@ -10,10 +10,14 @@ pub fn count(number: usize) -> String {
     thousands(number as u64)
 }
 
-/// Bytes in MiB or GiB.
-pub fn megabytes(bytes: u64) -> String {
-    let mib = bytes as f64 / MIB;
-    if mib >= 1024.0 { format!("{:.1} GiB", mib / 1024.0) } else { format!("{mib:.0} MiB") }
+/// Bytes in the unit that leaves the fewest digits.
+pub fn memory(bytes: u64) -> String {
+    match bytes as f64 / MIB {
+        mib if mib >= 1024.0 => format!("{:.1} GiB", mib / 1024.0),
+        mib if mib >= 1.0 => format!("{mib:.0} MiB"),
+        mib if bytes >= 1024 => format!("{:.0} KiB", mib * 1024.0),
+        _ => format!("{bytes} bytes"),
+    }
 }
 
 /// Seconds with as many digits as anyone wants to know.
@@ -54,6 +58,12 @@ pub fn table(heads: &[&str], rows: &[Vec<String>]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn memory_is_never_none() {
+        let shown = [1, 1023, 1024, 1 << 20, 3 << 29].map(memory);
+        assert_eq!(shown, ["1 bytes", "1023 bytes", "1 KiB", "1 MiB", "1.5 GiB"]);
+    }
 
     #[test]
     fn lengths_keep_four_digits() {

@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use outsight::error::short_number;
+
 /// One level of detail as `--lods` names it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LevelSize {
@@ -33,7 +35,7 @@ pub fn bytes(text: &str) -> Result<u64, String> {
 pub fn seconds(text: &str) -> Result<Duration, String> {
     let form = "write seconds as 90 or 0.5";
     let number: f64 = text.parse().map_err(|_| form.to_owned())?;
-    if number > 0.0 { Duration::try_from_secs_f64(number).map_err(|e| e.to_string()) } else { Err(form.to_owned()) }
+    if number > 0.0 { Duration::try_from_secs_f64(number).map_err(|_| form.to_owned()) } else { Err(form.to_owned()) }
 }
 
 /// A number of threads: beyond some, they cost more than they do.
@@ -61,14 +63,15 @@ pub fn triangles(text: &str) -> Result<usize, String> {
 pub fn ratio(text: &str) -> Result<f64, String> {
     let meaning = "a ratio is triangles kept ÷ given, above 0 and at most 1";
     if let Some(percent) = text.strip_suffix('%').and_then(|p| p.parse::<f64>().ok()) {
-        return Err(format!("{meaning}; for {percent} % write --ratio {}", percent / 100.0));
+        let [percent, share] = [percent, percent / 100.0].map(short_number);
+        return Err(format!("{meaning}; for {percent} % write --ratio {share}"));
     }
     let number: f64 = text.parse().map_err(|_| meaning.to_owned())?;
     if number > 0.0 && number <= 1.0 {
         Ok(number)
     } else if number > 1.0 && number <= 100.0 {
         Err(format!("{meaning}; for {number} % write --ratio {}", number / 100.0))
-    } else if number > 100.0 && number.is_finite() {
+    } else if (100.0..1e15).contains(&number) {
         Err(format!("{meaning}; for {} triangles write --triangles {}", number.trunc(), number.trunc()))
     } else {
         Err(meaning.to_owned())

@@ -54,8 +54,8 @@ struct Object<'a> {
 pub fn run(flags: &Flags, console: &Console) -> std::result::Result<(), Failure> {
     let request = request(flags, console)?;
     for files in (1..request.settings.len()).filter_map(|number| request.pictures_of(number)) {
-        check_place(&files.values, console)?;
-        check_place(&files.pixels, console)?;
+        outputs::check_place_to_be(&files.values, request.force)?;
+        outputs::check_place_to_be(&files.pixels, request.force)?;
     }
     let cameras = request.measure.camera_sphere()?.count();
     let task = Task::Verify { resolution: request.measure.resolution.unwrap_or(0), cameras };
@@ -91,15 +91,6 @@ fn request(flags: &Flags, console: &Console) -> Result<VerifyRequest> {
         up: flags.up.up,
         force: console.global.force,
     })
-}
-
-/// Refuses a picture that could not be written; its directory may be missing, it will be made.
-fn check_place(path: &std::path::Path, console: &Console) -> Result<()> {
-    match path.parent() {
-        Some(directory) if directory.exists() => outputs::check_place(path, console.global.force),
-        Some(directory) => outputs::check_place(directory, true),
-        None => Ok(()),
-    }
 }
 
 /// The asked condition: every pair keeps its limits.

@@ -7,12 +7,13 @@ use outsight::error::{Error, Result};
 use outsight::io::Loaded;
 use outsight::pipeline::Observer;
 use outsight::progress::Progress;
-use outsight::visibility::{MeasureOptions, RayOptions, SamplingEnd, Visibility};
+use outsight::visibility::{KeptFault, MeasureOptions, RayOptions, SamplingEnd, Visibility};
 use serde::Serialize;
 
 use super::console::Console;
-use super::estimate::{Task, memory_bytes};
-use super::text::{count, megabytes, significant};
+use super::estimate::{Task, memory_bytes, seconds};
+use super::system;
+use super::text::{count, duration, memory, significant};
 
 /// Watches one run of the library for a command.
 #[derive(Debug)]
@@ -73,6 +74,28 @@ impl<'a> Watch<'a> {
     }
 }
 
+impl Watch<'_> {
+    /// Says before the work starts what it will cost, where that is much.
+    fn tell_cost(&self, triangles: usize) {
+        let needed = memory_bytes(self.task, triangles);
+        if let Some((_, free)) = system::memory_bytes().filter(|&(_, free)| needed > free) {
+            let (needed, free) = (memory(needed), memory(free));
+            self.console.announce(&format!(
+                "about {needed} of memory are needed, and {free} are free; try a smaller --resolution or fewer --threads"
+            ));
+        }
+        if let Some(seconds) = seconds(self.task, triangles).filter(|&seconds| seconds > LONG_S) {
+            self.console.note(&format!(
+                "this takes about {}; fewer --cameras or a smaller --resolution take less",
+                duration(seconds)
+            ));
+        }
+    }
+}
+
+/// Nobody wonders whether a shorter run has stopped.
+const LONG_S: f64 = 120.0;
+
 impl Progress for Watch<'_> {
     fn report(&self, phase: &'static str, done: u64, total: u64) {
         self.console.report(phase, done, total);
@@ -97,7 +120,13 @@ impl Observer for Watch<'_> {
         if let Some(message) = set_aside_message(loaded) {
             self.console.warn(path, &message)?;
         }
-        check_memory(self.console.global.memory_limit, self.task, triangles)
+        check_memory(self.console.global.memory_limit, self.task, triangles)?;
+        self.tell_cost(triangles);
+        Ok(())
+    }
+
+    fn kept_look_unusable(&self, file: &Path, fault: KeptFault) -> Result<()> {
+        self.console.warn(file, &format!("{fault}; the mesh is looked at again"))
     }
 
     fn measured(&self, options: &MeasureOptions, seen: &Visibility) -> Result<()> {
@@ -156,9 +185,9 @@ fn check_memory(limit: Option<u64>, task: Task, triangles: usize) -> Result<()> 
     }
     let message = format!(
         "--memory-limit {}: {} triangles need about {}; raise the limit or use a smaller mesh",
-        megabytes(limit),
+        memory(limit),
         count(triangles),
-        megabytes(needed)
+        memory(needed)
     );
     Err(Error::Limit { message })
 }

@@ -38,6 +38,22 @@ pub fn write_atomic(path: &Path, force: bool, write: impl FnOnce(&mut dyn Write)
     }
 }
 
+/// Does the same in a directory that is made where there is none, and that goes again if the file is not written.
+///
+/// # Errors
+/// As [`write_atomic`].
+pub fn write_atomic_in_directory(
+    path: &Path,
+    force: bool,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<()> {
+    let folder = folder_of(path);
+    let made: Vec<&Path> = folder.ancestors().take_while(|f| !f.as_os_str().is_empty() && !f.exists()).collect();
+    fs::create_dir_all(folder).map_err(|e| refused(folder, &format!("cannot be made a directory: {e}")))?;
+    // From the inside out; what holds something by now stays.
+    write_atomic(path, force, write).inspect_err(|_| made.into_iter().for_each(|folder| drop(fs::remove_dir(folder))))
+}
+
 /// What a path stands for.
 enum Target {
     Stdout,
@@ -195,6 +211,19 @@ mod tests {
         let error = write(&folder.path().join("no/a.bin"), true, b"").unwrap_err().to_string();
         assert!(error.contains("there is no directory") && error.ends_with("create it first"), "{error}");
         assert!(check_target(&folder.path().join("new.bin"), false).is_ok());
+    }
+
+    #[test]
+    fn directory_comes_with_its_first_file_and_not_without() {
+        let home = tempfile::tempdir().unwrap();
+        let path = home.path().join("a/b/c.bin");
+        let failing = |w: &mut dyn Write| w.write_all(b"x").and(Err(io::Error::other("the sky fell")));
+        assert!(write_atomic_in_directory(&path, false, failing).is_err());
+        assert!(names(home.path()).is_empty());
+        write_atomic_in_directory(&path, false, |w| w.write_all(b"x")).unwrap();
+        assert_eq!(names(&home.path().join("a/b")), ["c.bin"]);
+        assert!(write_atomic_in_directory(&path, false, |w| w.write_all(b"y")).is_err());
+        assert_eq!(fs::read(&path).unwrap(), b"x");
     }
 
     #[cfg(unix)]

@@ -6,7 +6,13 @@ use super::fault::Fault;
 use super::format::FileName;
 use super::source;
 use super::text::{self, Lines};
-use crate::error::Result;
+use crate::error::{Error, Result, short_number};
+
+/// Cameras that may be listed: as many as can look.
+const MOST: usize = 65_536;
+
+/// So many cameras take a few MiB.
+const MOST_BYTES: u64 = 64 << 20;
 
 /// Reads a list of cameras: directions from the object toward each, with a weight, 1 where the file gives none.
 ///
@@ -15,12 +21,13 @@ use crate::error::Result;
 ///
 /// # Errors
 /// [`crate::Error::Read`]; [`crate::Error::Parse`], with the line, for a camera without direction, a number that is none or
-/// not finite, a weight not above 0; and for a file of fewer than two cameras.
+/// not finite, a weight not above 0; and for a file of fewer than two cameras or more than 65,536.
 pub fn read_cameras(path: &Path) -> Result<Vec<(DVec3, f64)>> {
-    /// The longest list that can be looked from takes a few MiB.
-    const MOST_BYTES: u64 = 64 << 20;
     let name = FileName::of(path);
-    let bytes = source::read_all(path, &name, Some(MOST_BYTES))?;
+    let bytes = source::read_all(path, &name, Some(MOST_BYTES)).map_err(|error| match error {
+        Error::Limit { .. } => Fault::new(format!("a list of cameras has at most {MOST} in 64 MiB")).named(&name.shown),
+        other => other,
+    })?;
     parse(&bytes).map_err(|fault| fault.named(&name.shown))
 }
 
@@ -36,6 +43,9 @@ fn parse(bytes: &[u8]) -> std::result::Result<Vec<(DVec3, f64)>, Fault> {
         }
         if !(is_first && is_heading(&words)) {
             cameras.push(camera(&words, number)?);
+            if cameras.len() > MOST {
+                return Err(Fault::at(number, format!("this is camera {}; at most {MOST} can look", cameras.len())));
+            }
         }
         is_first = false;
     }
@@ -68,7 +78,11 @@ fn camera(words: &[&[u8]], line: usize) -> std::result::Result<(DVec3, f64), Fau
         return Err(Fault::at(line, "0 0 0 is no direction; a camera stands away from the mesh"));
     };
     let weight = numbers.get(3).copied().unwrap_or(1.0);
-    if weight > 0.0 { Ok((unit, weight)) } else { Err(Fault::at(line, format!("the weight {weight} is not above 0"))) }
+    if weight > 0.0 {
+        Ok((unit, weight))
+    } else {
+        Err(Fault::at(line, format!("the weight {} is not above 0", short_number(weight))))
+    }
 }
 
 #[cfg(test)]

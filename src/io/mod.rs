@@ -26,7 +26,7 @@ mod vdg;
 
 use std::path::Path;
 
-pub use atomic::{check_target, write_atomic};
+pub use atomic::{check_target, write_atomic, write_atomic_in_directory};
 pub use cameras::read_cameras;
 pub use encode::{Attributes, WriteOptions, write};
 pub use format::Format;

@@ -19,6 +19,7 @@ pub use weld::{Welder, weld};
 
 use glam::DVec3;
 
+use crate::error::short_number;
 use crate::geom::{self, Aabb};
 
 /// Number of a triangle in its mesh.
@@ -46,7 +47,10 @@ pub enum MeshError {
         vertex_count: usize,
     },
     /// A vertex has a coordinate that is not a number, infinite, or beyond [`MAX_COORDINATE`].
-    #[error("vertex {vertex} is at ({x}, {y}, {z}); coordinates must be finite and at most 1e100")]
+    #[error(
+        "vertex {vertex} is at ({}, {}, {}); coordinates must be finite and at most 1e100",
+        short_number(*x), short_number(*y), short_number(*z)
+    )]
     BadCoordinate {
         /// The vertex.
         vertex: usize,

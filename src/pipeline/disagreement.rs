@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::backend::{ItemBuffers, MachineScratch};
 use crate::camera::{View, Window};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::eval::{Gallery, Shot};
 use crate::io;
 use crate::pipeline::VerifyRequest;
@@ -45,14 +45,10 @@ pub(super) fn write_pictures(
     comparing: Comparing<'_>,
     request: &VerifyRequest,
 ) -> Result<Vec<PathBuf>> {
-    if let Some(directory) = files.values.parent() {
-        let failed = |e: std::io::Error| Error::Write { path: directory.to_owned(), message: e.to_string() };
-        std::fs::create_dir_all(directory).map_err(failed)?;
-    }
     let mut written = Vec::new();
     let mut write = |path: &PathBuf, picture: &Picture| {
         written.push(path.clone());
-        io::write_atomic(path, request.force, |writer| picture.write_png(writer))
+        io::write_atomic_in_directory(path, request.force, |writer| picture.write_png(writer))
     };
     write(&files.values, &values_picture(pair[0], agreement, DVec3::from_array(request.up))?)?;
     if let Some(picture) = pixels_picture(pair, agreement, comparing)? {

@@ -144,7 +144,7 @@ pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result
     let read = clock.lap();
     // A cache keeps no diagram: who wants one must look.
     let cache = request.cache.as_deref().filter(|_| request.diagram.is_none());
-    let mut observation = Observation::of(occluders.around(&loaded.mesh)?, &request.measure, cache)?;
+    let mut observation = Observation::of(occluders.around(&loaded.mesh)?, &request.measure, cache, observer)?;
     let build = clock.lap();
     let (visibility, record) = look(&mut observation, request, observer)?;
     let looked = clock.lap();

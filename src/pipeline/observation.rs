@@ -1,4 +1,4 @@
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
@@ -58,10 +58,14 @@ struct Kept {
 
 impl<'a> Observation<'a> {
     /// Finds what `cache` keeps of the look, and gets ready to look where it keeps nothing.
-    pub fn of(scene: Surrounded<'a>, options: &'a MeasureOptions, cache: Option<&Path>) -> Result<Self> {
-        let kept = cache
-            .map(|cache| Kept::find(cache, MeasurementKey::of(scene.mesh, scene.occluders, options)))
-            .transpose()?;
+    pub fn of(
+        scene: Surrounded<'a>,
+        options: &'a MeasureOptions,
+        cache: Option<&Path>,
+        observer: &dyn Observer,
+    ) -> Result<Self> {
+        let key = || MeasurementKey::of(scene.mesh, scene.occluders, options);
+        let kept = cache.map(|cache| Kept::find(cache, key(), observer)).transpose()?;
         let mut observation = Self { scene, options, subject: None, kept };
         if observation.kept.as_ref().is_none_or(|kept| kept.visibility.is_none()) {
             observation.subject()?;
@@ -108,7 +112,7 @@ impl<'a> Observation<'a> {
         let Some(kept) = self.kept.as_ref().filter(|kept| kept.reused != "hit") else { return Ok(()) };
         let measurement = KeptMeasurement { visibility: visibility.clone(), hidden: hidden.map(<[bool]>::to_vec) };
         let bytes = measurement.to_bytes(&kept.key);
-        io::write_atomic(&kept.file, true, |output| output.write_all(&bytes))
+        io::write_atomic_in_directory(&kept.file, true, |output| output.write_all(&bytes))
     }
 
     /// `hit`, `partial` or `miss`; `None` without a cache.
@@ -118,40 +122,46 @@ impl<'a> Observation<'a> {
 }
 
 impl Kept {
-    fn find(cache: &Path, key: MeasurementKey) -> Result<Self> {
+    fn find(cache: &Path, key: MeasurementKey, observer: &dyn Observer) -> Result<Self> {
         let file = file_in(cache, &key);
-        if !cache_is_file(cache) {
-            fs::create_dir_all(cache).map_err(|e| Error::Write {
-                path: cache.to_owned(),
-                message: format!("cannot be made a directory for measurements: {e}"),
-            })?;
+        // A directory that is not there is made when there is something to keep.
+        if cache_is_file(cache) || cache.is_dir() {
+            io::check_target(&file, true)?;
         }
-        io::check_target(&file, true)?;
-        let (visibility, hidden) = match read(&file, &key)? {
-            Some(found) => (Some(found.visibility), found.hidden),
-            None => (None, None),
+        let found = match read(&file, &key)? {
+            Ok(found) => found,
+            Err(fault) if cache_is_file(cache) => return Err(unusable(&file, fault)),
+            // In a directory the name says what a file should hold, so that it can be replaced.
+            Err(fault) => {
+                observer.kept_look_unusable(&file, fault)?;
+                None
+            }
         };
+        let (visibility, hidden) = found.map_or((None, None), |found| (Some(found.visibility), found.hidden));
         let reused = if visibility.is_some() { "hit" } else { "miss" };
         Ok(Self { file, key, visibility, hidden, reused })
     }
 }
 
+fn unusable(path: &Path, fault: KeptFault) -> Error {
+    let next = if fault == KeptFault::Damaged { "delete it" } else { "give --cache another name, or delete it" };
+    Error::Parse { place: path.display().to_string(), message: format!("{fault}; {next}") }
+}
+
 /// What a file keeps; `None` where there is no file.
-fn read(path: &Path, key: &MeasurementKey) -> Result<Option<KeptMeasurement>> {
+fn read(path: &Path, key: &MeasurementKey) -> Result<std::result::Result<Option<KeptMeasurement>, KeptFault>> {
     let failed = |source| Error::Read { path: path.to_owned(), source };
     let mut file = match File::open(path) {
         Ok(file) => file,
-        Err(e) if e.kind() == ErrorKind::NotFound => return Ok(None),
+        Err(e) if e.kind() == ErrorKind::NotFound => return Ok(Ok(None)),
         Err(e) => return Err(failed(e)),
-    };
-    let wrong = |fault: KeptFault| {
-        let next = if fault == KeptFault::Damaged { "delete it" } else { "give --cache another name, or delete it" };
-        Error::Parse { place: path.display().to_string(), message: format!("{fault}; {next}") }
     };
     let mut bytes = Vec::new();
     // Whatever else the file is, it need not be read to its end.
     file.by_ref().take(KeptMeasurement::HEAD as u64).read_to_end(&mut bytes).map_err(failed)?;
-    KeptMeasurement::check_head(&bytes, key).map_err(wrong)?;
+    if let Err(fault) = KeptMeasurement::check_head(&bytes, key) {
+        return Ok(Err(fault));
+    }
     file.read_to_end(&mut bytes).map_err(failed)?;
-    KeptMeasurement::from_bytes(&bytes, key).map(Some).map_err(wrong)
+    Ok(KeptMeasurement::from_bytes(&bytes, key).map(Some))
 }

@@ -83,8 +83,8 @@ fn flat(mesh: &TriMesh, shot: &Shot) -> Result<Picture> {
 
 /// Heat colours, darkened by half where the surface turns away, so that its shape shows.
 fn heat(mesh: &TriMesh, shot: &Shot, request: &RenderRequest, observer: &dyn Observer) -> Result<Picture> {
-    let mut observation =
-        Observation::of(Surrounded { mesh, occluders: &[] }, &request.measure, request.cache.as_deref())?;
+    let scene = Surrounded { mesh, occluders: &[] };
+    let mut observation = Observation::of(scene, &request.measure, request.cache.as_deref(), observer)?;
     let visibility = observation.visibility(observer)?;
     observation.keep(&visibility, None)?;
     let picture = Gallery::new(mesh, mesh).coloured(shot, |hit, brightness| {

@@ -105,6 +105,12 @@ impl VerifyRequest {
             let message = "name at least two to compare, as in raster,embree".to_owned();
             return Err(Error::Option { name: "--backends", message });
         }
+        if let Some(setting) = self.settings.iter().find(|setting| !setting.goes_together()) {
+            let (estimator, backend) = (setting.estimator.name(), setting.backend.name());
+            let message =
+                format!("{setting}: {estimator} needs rays, which {backend} does not cast; name {estimator}@embree");
+            return Err(Error::Option { name: "--backends", message });
+        }
         let check = |setting: &Setting| setting.apply(&self.measure).check().map_err(|error| named(*setting, error));
         self.settings.iter().try_for_each(check)
     }

@@ -1,7 +1,7 @@
 //! Options, their presets and their check.
 
 use super::{Boundary, PlaneWeight, Target, Topology};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, short_number};
 
 /// Largest [`SimplifyOptions::regulariser`]: beyond it the pull would move corners by more than rounding.
 const MAX_REGULARISER: f64 = 1e-3;
@@ -144,7 +144,8 @@ fn in_range(name: &'static str, value: f64, range: std::ops::RangeInclusive<f64>
     if range.contains(&value) {
         return Ok(());
     }
-    Err(bad(name, &format!("{value} is outside {} to {}", range.start(), range.end())))
+    let [value, start, end] = [value, *range.start(), *range.end()].map(short_number);
+    Err(bad(name, &format!("{value} is outside {start} to {end}")))
 }
 
 fn bad(name: &'static str, message: &str) -> Error {

@@ -1,4 +1,4 @@
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, short_number};
 use crate::visibility::Visibility;
 
 /// What becomes of triangles that nobody sees.
@@ -50,7 +50,7 @@ pub fn importance(visibility: &Visibility, hidden: Hidden, power: f64) -> Result
     if !(0.0..=16.0).contains(&power) {
         return Err(Error::Option {
             name: "--visibility-power",
-            message: format!("{power} is not a power from 0 to 16; 2 is the paper's"),
+            message: format!("{} is not a power from 0 to 16; 2 is the paper's", short_number(power)),
         });
     }
     // A square is one product; other powers go through a library that gives the same bits on every machine.

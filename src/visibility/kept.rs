@@ -21,8 +21,11 @@ impl MeasurementKey {
     /// The key of looking at `mesh` among `occluders` under `options` with this version of Outsight.
     #[must_use]
     pub fn of(mesh: &TriMesh, occluders: &[TriMesh], options: &MeasureOptions) -> Self {
-        // How much memory there is changes no number. Every other option goes in, those of later versions too.
-        let options = MeasureOptions { memory_limit: None, ..options.clone() };
+        // How much memory there is changes no number, nor does the seed of nothing. Every other option goes in, those of later versions too.
+        let mut options = MeasureOptions { memory_limit: None, ..options.clone() };
+        if !options.is_random() {
+            options.rays.seed = 0;
+        }
         let words = format!("Outsight {}, {options:?}", env!("CARGO_PKG_VERSION"));
         let surroundings = occluders.iter().flat_map(hash_of).collect();
         Self { mesh: hash_of(mesh), options: Sha256::digest([words.into_bytes(), surroundings].concat()).into() }
@@ -126,7 +129,7 @@ mod tests {
     use crate::camera::Cameras;
     use crate::mesh::shapes;
     use crate::progress::Silent;
-    use crate::visibility::{Sides, measure};
+    use crate::visibility::{Estimator, RayOptions, Sides, measure};
 
     fn options() -> MeasureOptions {
         MeasureOptions { cameras: Cameras::octahedral(18), resolution: Some(32), ..MeasureOptions::default() }
@@ -174,6 +177,17 @@ mod tests {
         assert_eq!(fault(&MeasurementKey::of(&mesh, std::slice::from_ref(&mesh), &options())), KeptFault::OtherOptions);
         let frugal = MeasureOptions { memory_limit: Some(1 << 40), ..options() };
         assert_eq!(MeasurementKey::of(&mesh, &[], &frugal), key, "memory changes no number");
+        let seeded = |estimator, points| {
+            let key = |seed| {
+                let rays = RayOptions { seed, points, ..RayOptions::default() };
+                MeasurementKey::of(&mesh, &[], &MeasureOptions { estimator, rays, ..options() })
+            };
+            key(1) != key(2)
+        };
+        assert!(seeded(Estimator::Hemisphere, 1) && seeded(Estimator::Surface, 5));
+        let seedless =
+            [(Estimator::Coverage, 1), (Estimator::ItemBuffer, 1), (Estimator::Surface, 1), (Estimator::Surface, 4)];
+        assert!(!seedless.into_iter().any(|(estimator, points)| seeded(estimator, points)));
         assert_eq!(KeptMeasurement::from_bytes(b"ply\n", &key), Err(KeptFault::Foreign));
     }
 }

@@ -166,6 +166,16 @@ impl MeasureOptions {
         })
     }
 
+    /// Whether the seed says where rays start or go.
+    #[must_use]
+    pub fn is_random(&self) -> bool {
+        match self.estimator {
+            Estimator::Coverage | Estimator::ItemBuffer => false,
+            Estimator::Surface => self.rays.spreads_points(),
+            Estimator::Hemisphere => true,
+        }
+    }
+
     /// The cameras that look.
     ///
     /// # Errors

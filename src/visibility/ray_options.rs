@@ -55,6 +55,11 @@ impl Default for RayOptions {
 }
 
 impl RayOptions {
+    /// Whether `surface` starts from points spread at random: 1, 3 and 4 stand where symmetry puts them.
+    pub(super) fn spreads_points(&self) -> bool {
+        ![1, 3, 4].contains(&self.points)
+    }
+
     /// Checks every option.
     ///
     /// # Errors

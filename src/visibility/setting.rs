@@ -32,7 +32,16 @@ const ESTIMATORS: [Estimator; 4] =
 /// The backends that have one.
 const BACKENDS: [BackendKind; 3] = [BackendKind::Raster, BackendKind::Embree, BackendKind::Gpu];
 
+/// Characters of a wrong name that the message repeats.
+const MOST_QUOTED: usize = 40;
+
 impl Setting {
+    /// Whether the backend can do what the estimator needs, apart from whether it is there.
+    #[must_use]
+    pub fn goes_together(self) -> bool {
+        self.estimator.draws() || self.backend.casts_rays()
+    }
+
     /// `options` with this estimator and backend.
     #[must_use]
     pub fn apply(self, options: &MeasureOptions) -> MeasureOptions {
@@ -72,9 +81,13 @@ impl FromStr for Setting {
             None => backend(text).map(|b| (Estimator::Coverage, b)).or_else(|| estimator(text).map(|e| (e, usual(e)))),
         };
         found.map(|(estimator, backend)| Self { estimator, backend }).ok_or_else(|| {
+            // Only what would work here is offered.
+            let here = BACKENDS.into_iter().filter(|b| b.check().is_ok()).map(BackendKind::name).collect::<Vec<_>>();
+            let text: String = text.chars().take(MOST_QUOTED).collect();
             format!(
-                "{text} is neither a backend (raster, embree, gpu), an estimator (coverage, item-buffer, surface, \
-                 hemisphere) nor both, as in surface@embree"
+                "{text} is neither a backend ({}), an estimator (coverage, item-buffer, surface, hemisphere) nor both, as \
+                 in surface@embree",
+                here.join(", ")
             )
         })
     }
