@@ -1,20 +1,13 @@
 //! What a measurement leaves besides its numbers, as users meet it: diagrams, kept measurements, explanations.
 
-#![allow(clippy::unwrap_used)]
-
 use std::fs;
-use std::path::Path;
 
-use assert_cmd::Command;
 use outsight::io::{self, Attributes, WriteOptions};
 use outsight::mesh::shapes;
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// Fewer pixels than any default, for speed.
-const SMALL: [&str; 4] = ["--cameras", "18", "--resolution", "64"];
-
-const GEARBOX: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/gearbox.ply.zst");
+use crate::runner::{Ended, GEARBOX, SMALL, json, names, run};
 
 /// A sheet and a larger plate above it; between them in the file, a triangle that repeats a vertex.
 const COVERED: &str = "OFF\n7 3 0\n-1 -1 0\n1 -1 0\n0 1 0\n-9 -9 1\n9 -9 1\n0 9 1\n5 5 5\n\
@@ -25,36 +18,6 @@ fn directory() -> TempDir {
     let directory = tempfile::tempdir().unwrap();
     fs::write(directory.path().join("covered.off"), COVERED).unwrap();
     directory
-}
-
-/// What a run left: its exit code, standard output and standard error.
-struct Ended {
-    code: i32,
-    out: String,
-    err: String,
-}
-
-fn run(directory: &Path, arguments: &[&str]) -> Ended {
-    let mut command = Command::cargo_bin("outsight").unwrap();
-    let output = command.current_dir(directory).env_remove("OUTSIGHT_CACHE").args(arguments).output().unwrap();
-    Ended {
-        code: output.status.code().unwrap(),
-        out: String::from_utf8_lossy(&output.stdout).into_owned(),
-        err: String::from_utf8_lossy(&output.stderr).into_owned(),
-    }
-}
-
-fn json(directory: &Path, arguments: &[&str]) -> Value {
-    let ended = run(directory, arguments);
-    assert_eq!(ended.code, 0, "{}", ended.err);
-    serde_json::from_str(&ended.out).unwrap()
-}
-
-fn names(directory: &Path) -> Vec<String> {
-    let mut names: Vec<String> =
-        fs::read_dir(directory).unwrap().map(|e| e.unwrap().file_name().to_string_lossy().into_owned()).collect();
-    names.sort();
-    names
 }
 
 #[test]
