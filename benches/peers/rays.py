@@ -28,7 +28,7 @@ import numpy as np
 import open3d as o3d
 import pymeshlab
 
-from program import outsight
+from outsight import outsight
 
 
 def octahedral_cameras():
