@@ -73,7 +73,9 @@ def study(model, folder):
                 rows[name] = (target, run(target))
             except Exception as error:  # a rival that fails is part of the record
                 print(f"{pathlib.Path(model).name} | {count:,} | {name} | failed: {error} | |")
-        compared, _ = outsight("compare", source, *(path for path, _ in rows.values()), "--samples", 1000)
+        # Pictures alone are wanted here: few samples, and no more than a glance at the original.
+        glance = ("--surface-samples", 1000, "--cameras", 6, "--resolution", 64)
+        compared, _ = outsight("compare", source, *(path for path, _ in rows.values()), *glance)
         rivals = [t for t, n in zip(compared["tests"], rows) if not n.startswith("Outsight")]
         best = min((t["image_rmse"] for t in rivals if t["triangles"] <= 1.05 * count), default=float("nan"))
         for test, (name, (_, seconds)) in zip(compared["tests"], rows.items()):
