@@ -103,13 +103,15 @@ fn comparing_gives_the_same_numbers_on_any_number_of_threads() {
     let outsight = || Command::cargo_bin("outsight").unwrap();
     outsight().args(["simplify", GEARBOX, "--metric", "quadric", "-r", "0.02", "-o"]).arg(&small).assert().success();
     let run = |threads: &str| {
-        let options = ["--samples", "20000", "--threads", threads, "--json"];
+        let options =
+            ["--surface-samples", "20000", "--cameras", "66", "--resolution", "100", "--threads", threads, "--json"];
         let ended = outsight().args(["compare", GEARBOX]).arg(&small).args(options).assert().success();
         let object: serde_json::Value = serde_json::from_slice(&ended.get_output().stdout).unwrap();
         object["tests"].clone()
     };
     let one = run("1");
     assert!(one[0]["image_rmse"].as_f64().unwrap() > 0.0);
+    assert!(one[0]["geometric"]["hidden"]["rms"].as_f64().unwrap() > 0.0);
     assert_eq!(one, run("2"));
     assert_eq!(one, run("3"));
 }

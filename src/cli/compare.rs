@@ -3,16 +3,21 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use outsight::eval::geometric::{Distances, MAX_SAMPLES};
 use outsight::pipeline::{CompareReport, CompareRequest, TestReport, compare_files};
 use serde::Serialize;
+use serde_json::Value;
 
+use super::cache::CacheFlags;
 use super::console::Console;
 use super::estimate::Task;
 use super::failure::Failure;
-use super::flags::{ReadingFlags, UpFlags};
+use super::flags::{LookingFlags, OccluderFlags, ReadingFlags, UpFlags};
+use super::in_force;
 use super::outputs::{self, Kind, Planned};
+use super::presets;
 use super::system::peak_mib;
-use super::text::{count, table};
+use super::text::{count, significant, table};
 use super::watch::Watch;
 
 #[derive(Debug, Args)]
@@ -28,11 +33,17 @@ pub struct Flags {
     /// Write a PNG contact sheet: reference, test, difference in red
     #[arg(short, long, value_name = "PNG")]
     output: Option<PathBuf>,
-    /// Points on each mesh for the distances [default: 10 per triangle of REF]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
-    samples: Option<u64>,
+    /// Points on each mesh whose distance is taken [default: 10 per triangle of REF, at least 100000]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MAX_SAMPLES))]
+    surface_samples: Option<u64>,
     #[command(flatten)]
     up: UpFlags,
+    #[command(flatten)]
+    looking: LookingFlags,
+    #[command(flatten)]
+    around: OccluderFlags,
+    #[command(flatten)]
+    cache: CacheFlags,
 }
 
 /// The library's report with what only the program knows.
@@ -41,50 +52,110 @@ struct Object<'a> {
     #[serde(flatten)]
     report: &'a CompareReport,
     reference: &'a Path,
+    occluders: &'a [PathBuf],
     peak_mb: Option<f64>,
+    options: Value,
 }
 
 /// Compares, writes the contact sheet, prints.
 pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
+    let measure = presets::measure_options(&flags.looking, &console.global)?;
+    let options = in_force::compare(flags.surface_samples, &measure);
     let request = CompareRequest {
         reference: flags.reference.clone(),
         tests: flags.tests.clone(),
         read: flags.reading.options(&console.global),
-        samples: flags.samples,
+        samples: flags.surface_samples,
         seed: console.global.seed,
+        measure: Some(measure),
+        occluders: flags.around.occluders.clone(),
+        cache: flags.cache.place()?,
         sheet: flags.output.clone(),
         up: flags.up.up,
         force: console.global.force,
     };
     if let Some(path) = &request.sheet {
-        let inputs: Vec<&Path> = flags.tests.iter().chain([&flags.reference]).map(PathBuf::as_path).collect();
+        let others = flags.tests.iter().chain(&request.occluders);
+        let inputs: Vec<&Path> = others.chain([&flags.reference]).map(PathBuf::as_path).collect();
         outputs::check(Planned { path, kind: Kind::Picture, format: None }, &inputs, request.force)?;
     }
-    let report = compare_files(&request, &Watch::new(console, Task::Compare))?;
-    let object = Object { report: &report, reference: &request.reference, peak_mb: peak_mib() };
+    let task = Task::Compare { resolution: flags.looking.resolution.unwrap_or(0) };
+    let report = compare_files(&request, &Watch::new(console, task))?;
+    let object = Object {
+        report: &report,
+        reference: &request.reference,
+        occluders: &request.occluders,
+        peak_mb: peak_mib(),
+        options,
+    };
     console.result(&object, &text(&report, &request), true)
 }
 
 fn text(report: &CompareReport, request: &CompareRequest) -> String {
-    let row = |test: &TestReport| {
-        vec![
-            test.file.display().to_string(),
-            count(test.triangles),
-            format!("{:.3}", test.image_rmse),
-            format!("{:.1}", test.silhouette_xor),
-            format!("{:.4}", test.geometric.mean),
-            format!("{:.4}", test.geometric.rms),
-            format!("{:.4}", test.geometric.max),
-        ]
-    };
-    let rows: Vec<Vec<String>> = report.tests.iter().map(row).collect();
-    let heads = ["file", "triangles", "image", "outline", "mean", "rms", "max"];
     let sheet = request.sheet.as_ref().map(|p| format!("contact sheet: {}\n", p.display())).unwrap_or_default();
+    let rows = |row: fn(&TestReport) -> Vec<String>| -> Vec<Vec<String>> {
+        let named = |test: &TestReport| std::iter::once(test.file.display().to_string()).chain(row(test)).collect();
+        report.tests.iter().map(named).collect()
+    };
     format!(
-        "{}image: root mean square difference in grey levels (0 to 255); outline: pixels per picture in one silhouette \
-         only;\nmean, rms, max: distance between the surfaces in % of the diagonal of {}, hidden surface \
-         included\n{sheet}",
-        table(&heads, &rows),
-        request.reference.display()
+        "{}image error, root mean square in grey levels (0 to 255): head light on flat triangles, fixed light, \
+         smooth\nshading; SSIM: 1 is alike; outline: pixels per picture in one silhouette only; depth: % of the \
+         diagonal\n\n\
+         {}distance in % of the diagonal ({}) of {}: mean, rms, max of the worse direction;\nrms from each mesh to the \
+         other, and from visible, from hidden and from all surface of REF, weighted by visibility\n\n\
+         {}flipped: against the surface of REF nearest to them, and their share of the area; edges: with three or \
+         more\ntriangles, and how many more than REF has\n{sheet}",
+        table(&["pictures", "triangles", "head light", "fixed", "smooth", "SSIM", "outline", "depth"], &rows(pictures)),
+        table(
+            &["distances", "mean", "rms", "max", "REF to test", "test to REF", "visible", "hidden", "weighted"],
+            &rows(distances)
+        ),
+        significant(report.diagonal),
+        request.reference.display(),
+        table(&["triangles", "flipped", "of area", "degenerate", "edges", "more"], &rows(quality)),
     )
+}
+
+fn pictures(test: &TestReport) -> Vec<String> {
+    vec![
+        count(test.triangles),
+        format!("{:.3}", test.image_rmse),
+        format!("{:.3}", test.fixed_light.image_rmse),
+        format!("{:.3}", test.smooth.image_rmse),
+        optional(Some(test.ssim)),
+        format!("{:.1}", test.silhouette_xor),
+        optional(test.depth),
+    ]
+}
+
+fn distances(test: &TestReport) -> Vec<String> {
+    let error = &test.geometric;
+    let rms = |part: Option<Distances>| part.map(|d| d.rms);
+    let all = [
+        Some(error.mean),
+        Some(error.rms),
+        Some(error.max),
+        Some(error.forward.rms),
+        Some(error.backward.rms),
+        rms(error.visible),
+        rms(error.hidden),
+        error.weighted_rms,
+    ];
+    all.map(optional).to_vec()
+}
+
+fn quality(test: &TestReport) -> Vec<String> {
+    let quality = &test.quality;
+    vec![
+        count(quality.flipped),
+        format!("{:.3} %", 100.0 * quality.flipped_area),
+        count(quality.degenerate),
+        count(quality.non_manifold_edges),
+        count(quality.new_non_manifold_edges),
+    ]
+}
+
+/// Four digits behind the point, or a dash where there is nothing to measure.
+fn optional(value: Option<f64>) -> String {
+    value.map_or("-".to_owned(), |value| format!("{value:.4}"))
 }

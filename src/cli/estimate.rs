@@ -43,8 +43,11 @@ pub enum Task {
         /// Pixels along the side; `None` where the study chooses them by the triangles.
         resolution: Option<u32>,
     },
-    /// Draws and compares meshes.
-    Compare,
+    /// Measures the reference, draws and compares meshes.
+    Compare {
+        /// Pixels along the side of the images that measure; 0 where not known before reading.
+        resolution: u32,
+    },
 }
 
 /// The program itself, its threads and their stacks.
@@ -63,6 +66,10 @@ const VERIFY_DIAGRAMS: u64 = 4;
 const VERIFY_IMAGES: u64 = 4;
 /// A triangle while it is compared: the search tree and the samples.
 const COMPARE_BYTES: u64 = 200;
+/// The reference's pictures.
+const COMPARE_PICTURES: u64 = 140 << 20;
+/// The item buffers and pictures of one axis, for each thread.
+const COMPARE_AXIS: u64 = 32 << 20;
 /// A pixel of the two item buffers of an axis: near and far, triangle and depth each.
 const PIXEL_BYTES: u64 = 16;
 
@@ -89,7 +96,10 @@ pub fn memory_bytes(task: Task, triangles: usize) -> u64 {
             let diagrams = VERIFY_DIAGRAMS * VisibilityDiagram::bytes(triangles as usize, cameras);
             diagrams + 2 * MEASURE_BYTES * triangles + VERIFY_IMAGES * images(resolution)
         }
-        Task::Compare => COMPARE_BYTES * triangles,
+        Task::Compare { resolution } => {
+            let drawing = COMPARE_PICTURES + COMPARE_AXIS * rayon::current_num_threads() as u64;
+            COMPARE_BYTES * triangles + drawing.max(images(resolution))
+        }
     };
     FLOOR_BYTES + READ_BYTES * triangles + working
 }
@@ -125,7 +135,7 @@ pub fn seconds(task: Task, triangles: usize) -> Option<f64> {
             let looking = (1.0 + LOOKING_AGAIN) * measure_seconds(triangles, cameras, resolution);
             Some(looking + triangles as f64 / COLLAPSED_TRIANGLES_PER_SECOND)
         }
-        Task::Read | Task::Verify { .. } | Task::Study { .. } | Task::Compare => None,
+        Task::Read | Task::Verify { .. } | Task::Study { .. } | Task::Compare { .. } => None,
     }
 }
 

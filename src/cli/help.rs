@@ -75,9 +75,12 @@ Examples:
 
 /// Behind `outsight compare --help`.
 pub const COMPARE: &str = "\
+REF is looked at too, to tell error that shows from error that is hidden.
+
 Examples:
   outsight compare part.ply small.ply
   outsight compare part.ply qb.ply vg.ply -o differences.png
+  outsight compare part.ply small.ply --cache looks          reuse what simplify saw
   outsight compare part.ply small.ply --json | jq '.tests[0].image_rmse'";
 
 /// Behind `outsight render --help`.

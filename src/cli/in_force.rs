@@ -54,6 +54,11 @@ pub fn verify(options: &MeasureOptions) -> Value {
     common
 }
 
+/// Options of comparing, and of measuring under `measure`. Surface samples of `null` were chosen by the triangles.
+pub fn compare(surface_samples: Option<u64>, options: &MeasureOptions) -> Value {
+    json!({ "surface_samples": surface_samples, "measure": measure(options) })
+}
+
 /// Options of simplifying, and of measuring under `measure`.
 pub fn simplify(request: &SimplifyRequest) -> Value {
     let options = &request.simplify;

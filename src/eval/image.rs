@@ -1,232 +1,183 @@
-use glam::DVec3;
 use rayon::prelude::*;
+use serde::Serialize;
 
-use crate::camera::{Frame, View, Window};
+use super::light::Light;
+use super::pictures::{EMPTY, Easel, PIXELS, Pictures, Sitter};
+use super::similarity::similarity;
+use crate::camera::Frame;
 use crate::error::Result;
-use crate::geom::{dodecahedron_axes, triangle_normal};
+use crate::geom::dodecahedron_axes;
 use crate::mesh::TriMesh;
 use crate::progress::Progress;
-use crate::raster::{GreyImage, Hit, ItemBufferPair, Scene, Screen, shade};
 
-/// How far a mesh's pictures are from the reference's, over 20 views under a head light.
+/// How far a mesh's pictures are from the reference's, over 20 views.
 ///
 /// Source: Zhang & Turk 2002, eq. (5.11).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImageError {
-    /// Square root of the sum of squared grey differences over all pixels of all views, grey 0 to 255.
+    /// Square root of the sum of squared grey differences over all pixels of all views, grey 0 to 255, under the light
+    /// that the paper's tables are read as: [`Light::Head`].
     pub image_rms: f64,
     /// Root of the mean of the same squares: grey levels per pixel.
     pub image_rmse: f64,
+    /// The two under [`Light::Fixed`].
+    pub fixed_light: GreyError,
+    /// The two under [`Light::Smooth`].
+    pub smooth: GreyError,
     /// Pixels per view that one mesh covers and the other does not; a pixel partly covered counts by its samples.
     pub silhouette_xor: f64,
+    /// Root mean square difference in depth over the samples that both cover, in model units; `None` where there are
+    /// none.
+    pub depth_rms: Option<f64>,
+    /// Mean structural similarity over the views under [`Light::Head`], each within the rectangle around what either
+    /// mesh shows; 1 is alike.
+    pub ssim: f64,
 }
 
-/// Pixels along an image's side.
-const IMAGE_WIDTH: u32 = 512;
-
-/// Samples along a pixel's side, averaged.
-const SAMPLES: u32 = 2;
+/// Error of pictures under one light, as in [`ImageError`].
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct GreyError {
+    /// As [`ImageError::image_rms`].
+    pub image_rms: f64,
+    /// As [`ImageError::image_rmse`].
+    pub image_rmse: f64,
+}
 
 /// Views: the vertices of a dodecahedron, none of which is an octahedral camera.
 const VIEWS: f64 = 20.0;
 
+const SAMPLES_PER_PIXEL: f64 = (super::gallery::SAMPLES * super::gallery::SAMPLES) as f64;
+
 /// Compares the pictures of each test mesh with those of the reference, one result per test.
 ///
-/// Orthographic views from the 20 vertices of a dodecahedron; 512 × 512 pixels of 2 × 2 samples; all meshes in one
-/// square around the centre of the reference's box, half its diagonal to each side; flat shading by a head light,
-/// grey 255 |n·d|, both sides lit, background 0.
-///
 /// # Errors
-/// [`crate::Error::Limit`] if a test mesh is so much larger than the reference that it cannot be drawn beside it,
-/// [`crate::Error::Cancelled`].
+/// As [`ReferencePictures::compare`].
 pub fn image_errors(reference: &TriMesh, tests: &[&TriMesh], progress: &dyn Progress) -> Result<Vec<ImageError>> {
-    let original = Gallery::new(reference, reference);
-    let others: Vec<Gallery> = tests.iter().map(|test| Gallery::new(test, reference)).collect();
-    let axes = dodecahedron_axes();
-    let per_axis: Vec<Vec<Difference>> = axes
-        .par_iter()
-        .map(|&axis| {
-            progress.check()?;
-            let pictures = original.both_ways(axis)?;
-            let differences = others.iter().map(|other| Ok(Difference::between(&pictures, &other.both_ways(axis)?)));
-            differences.collect()
-        })
-        .collect::<Result<_>>()?;
-    progress.report("image error", axes.len() as u64, axes.len() as u64);
-    // Sums run in the order of the axes, whatever thread drew them.
-    let total = |test: usize| per_axis.iter().map(|d| d[test]).fold(Difference::default(), Difference::plus);
-    Ok((0..tests.len()).map(|test| total(test).over_all_views()).collect())
+    let pictures = ReferencePictures::new(reference, progress)?;
+    tests.iter().map(|test| pictures.compare(test, progress)).collect()
 }
 
-/// One mesh, ready to be pictured in the frame of another.
+/// The pictures of a mesh that others are compared with, drawn once: 150 MB.
+///
+/// Orthographic views from the 20 vertices of a dodecahedron; 512 × 512 pixels of 2 × 2 samples; all meshes in one
+/// square around the centre of the reference's box, half its diagonal to each side; both sides lit, background 0. Each
+/// view is drawn once and shaded under all of [`Light::ALL`].
 #[derive(Debug)]
-pub struct Gallery {
-    scene: Scene,
-    normals: Vec<DVec3>,
-    /// Half the diagonal of the reference's box, in its unit-sphere units: no view cuts anything off.
-    half_width: f64,
+pub struct ReferencePictures<'a> {
+    mesh: &'a TriMesh,
+    per_axis: Vec<Pictures>,
 }
 
-/// What a pair of opposite cameras shows: shaded pictures, and which samples are covered (the same for both).
-struct Pictures {
-    grey: [GreyImage; 2],
-    covered: Vec<bool>,
-}
-
-impl Gallery {
-    /// Pictures of `mesh`, framed by the box of `reference`.
-    #[must_use]
-    pub fn new(mesh: &TriMesh, reference: &TriMesh) -> Self {
-        let frame = Frame::of(reference);
-        let normal = |t: &[u32; 3]| triangle_normal(t.map(|v| frame.to_unit(mesh.positions()[v as usize])));
-        Self {
-            scene: Scene::new(frame.unit_copy(mesh)),
-            normals: mesh.triangles().iter().map(|t| normal(t).unwrap_or_default()).collect(),
-            half_width: 0.5 * reference.bounds().diagonal() / frame.radius,
-        }
-    }
-
-    /// One picture under a light beside the camera, grey 0 to 255; `background` is the grey where nothing is hit.
+impl<'a> ReferencePictures<'a> {
+    /// Draws the reference.
     ///
     /// # Errors
-    /// [`crate::Error::Limit`] as [`image_errors`].
-    pub fn picture(&self, shot: &Shot, background: f64) -> Result<GreyImage> {
-        let buffers = self.draw(&shot.view())?;
-        let greys = buffers.near().map(|hit| Some(hit.map_or(background, |hit| self.head_light(hit, shot.toward))));
-        Ok(shade(&buffers, greys, SAMPLES as usize, |grey| grey))
+    /// [`crate::Error::Cancelled`].
+    pub fn new(mesh: &'a TriMesh, progress: &dyn Progress) -> Result<Self> {
+        let per_axis = on_all_axes(&Sitter::new(mesh, mesh), progress, |_, pictures| pictures)?;
+        Ok(Self { mesh, per_axis })
     }
 
-    /// The same in colour: `colour` gives three channels, 0 to 255, for a hit and |n·d|; the background is white.
-    ///
-    /// Returns `width` × `width` RGB triples, top row first.
+    /// Compares the pictures of `test` with those of the reference.
     ///
     /// # Errors
-    /// [`crate::Error::Limit`] as [`image_errors`].
-    pub fn coloured(&self, shot: &Shot, colour: impl Fn(Hit, f64) -> [f64; 3]) -> Result<Vec<u8>> {
-        let buffers = self.draw(&shot.view())?;
-        let channel = |c: usize| {
-            let hits = buffers.near().map(|hit| Some(hit.map_or(255.0, |h| colour(h, self.cosine(h, shot.toward))[c])));
-            shade(&buffers, hits, SAMPLES as usize, |value| value).pixels
-        };
-        let [red, green, blue] = [0, 1, 2].map(channel);
-        let triples = red.iter().zip(&green).zip(&blue);
-        Ok(triples.flat_map(|((r, g), b)| [r, g, b].map(|&value| (value + 0.5) as u8)).collect())
-    }
-
-    /// Grey of a triangle under a light beside the camera: 255 |n·d|.
-    fn head_light(&self, hit: Hit, toward: DVec3) -> f64 {
-        255.0 * self.cosine(hit, toward)
-    }
-
-    fn cosine(&self, hit: Hit, toward: DVec3) -> f64 {
-        self.normals[hit.triangle.0 as usize].dot(toward).abs()
-    }
-
-    fn both_ways(&self, axis: DVec3) -> Result<Pictures> {
-        let view = View::toward(axis, Window { width: SAMPLES * IMAGE_WIDTH, half_width: self.half_width });
-        let buffers = self.draw(&view)?;
-        let brightness = |hit: Hit| self.head_light(hit, axis);
-        let near = shade(&buffers, buffers.near(), SAMPLES as usize, brightness);
-        let far = shade(&buffers, buffers.far(), SAMPLES as usize, brightness);
-        Ok(Pictures { grey: [near, far], covered: buffers.near().map(|hit| hit.is_some()).collect() })
-    }
-
-    fn draw(&self, view: &View) -> Result<ItemBufferPair> {
-        let mut buffers = ItemBufferPair::new(view.window);
-        self.scene.draw(view, &mut Screen::default(), &mut buffers)?;
-        Ok(buffers)
+    /// [`crate::Error::Limit`] if `test` is so much larger than the reference that it cannot be drawn beside it,
+    /// [`crate::Error::Cancelled`].
+    pub fn compare(&self, test: &TriMesh, progress: &dyn Progress) -> Result<ImageError> {
+        let sitter = Sitter::new(test, self.mesh);
+        let between = |axis: usize, pictures: Pictures| Difference::between(&self.per_axis[axis], &pictures);
+        // Sums run in the order of the axes, whatever thread drew them.
+        let differences = on_all_axes(&sitter, progress, between)?;
+        let total = differences.into_iter().fold(Difference::default(), Difference::plus);
+        Ok(total.over_all_views(Frame::of(self.mesh).radius))
     }
 }
 
-/// A picture to take.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shot {
-    /// Unit vector from the object toward the camera.
-    pub toward: DVec3,
-    /// Upward in the picture.
-    pub up: DVec3,
-    /// Pixels along the side.
-    pub width: u32,
-    /// How far the picture reaches to each side of the centre, in unit-sphere units of the reference.
-    pub half_width: f64,
+/// Draws the mesh along every axis, in the order of the axes.
+fn on_all_axes<T: Send>(
+    sitter: &Sitter,
+    progress: &dyn Progress,
+    finish: impl Fn(usize, Pictures) -> T + Sync,
+) -> Result<Vec<T>> {
+    let axes = dodecahedron_axes();
+    let draw = |easel: &mut Easel, axis: usize| {
+        progress.check()?;
+        Ok(finish(axis, sitter.pose(axes[axis], easel)?))
+    };
+    let results = (0..axes.len()).into_par_iter().map_init(|| sitter.easel(), draw).collect::<Result<_>>()?;
+    progress.report("image error", axes.len() as u64, axes.len() as u64);
+    Ok(results)
 }
 
-impl Shot {
-    /// The shot from `toward` that just holds `mesh`, with a narrow margin.
-    #[must_use]
-    pub fn fitting(mesh: &TriMesh, toward: DVec3, up: DVec3, width: u32) -> Self {
-        const MARGIN: f64 = 1.05;
-        let frame = Frame::of(mesh);
-        let view = Self { toward, up, width: 1, half_width: 1.0 }.view();
-        let corners = mesh.triangles().iter().flatten().map(|&v| frame.to_unit(mesh.positions()[v as usize]));
-        let reach = corners.map(|p| p.dot(view.right).abs().max(p.dot(view.up).abs())).fold(0.0, f64::max);
-        Self { toward, up, width, half_width: MARGIN * reach }
-    }
-
-    fn view(&self) -> View {
-        let window = Window { width: SAMPLES * self.width, half_width: self.half_width };
-        View::upright(self.toward, self.up, window)
-    }
-}
-
+/// Sums over pixels of views, from which an [`ImageError`] follows.
 #[derive(Debug, Clone, Copy, Default)]
 struct Difference {
-    squares: f64,
+    /// Squared grey differences, by light.
+    squares: [f64; 3],
     samples_xor: u64,
+    samples_both: u64,
+    /// In unit-sphere units squared, over the samples of `samples_both`.
+    depth_squares: f64,
+    similarity: f64,
 }
 
 impl Difference {
     fn between(a: &Pictures, b: &Pictures) -> Self {
-        let squares = |a: &GreyImage, b: &GreyImage| -> f64 {
-            a.pixels.iter().zip(&b.pixels).map(|(x, y)| f64::from(x - y) * f64::from(x - y)).sum()
+        let pairs = |light: usize| a.greys[light].iter().zip(&b.greys[light]);
+        let mut sums = Self {
+            squares: [0, 1, 2].map(|light| pairs(light).map(squares).sum()),
+            similarity: pairs(Light::Head as usize).map(|(a, b)| similarity(a, b)).sum(),
+            ..Self::default()
         };
-        let xor = a.covered.iter().zip(&b.covered).filter(|(x, y)| x != y).count() as u64;
-        Self { squares: squares(&a.grey[0], &b.grey[0]) + squares(&a.grey[1], &b.grey[1]), samples_xor: 2 * xor }
+        for (a, b) in a.depths.iter().zip(&b.depths) {
+            sums.add_depths(a, b);
+        }
+        sums
+    }
+
+    fn add_depths(&mut self, a: &[f32], b: &[f32]) {
+        for (&a, &b) in a.iter().zip(b) {
+            let covered = [a, b].map(|depth| depth != EMPTY);
+            self.samples_xor += u64::from(covered[0] != covered[1]);
+            if covered == [true; 2] {
+                self.samples_both += 1;
+                self.depth_squares += f64::from(a - b) * f64::from(a - b);
+            }
+        }
     }
 
     fn plus(self, other: Self) -> Self {
-        Self { squares: self.squares + other.squares, samples_xor: self.samples_xor + other.samples_xor }
+        Self {
+            squares: [0, 1, 2].map(|light| self.squares[light] + other.squares[light]),
+            samples_xor: self.samples_xor + other.samples_xor,
+            samples_both: self.samples_both + other.samples_both,
+            depth_squares: self.depth_squares + other.depth_squares,
+            similarity: self.similarity + other.similarity,
+        }
     }
 
-    fn over_all_views(self) -> ImageError {
-        let pixels = VIEWS * f64::from(IMAGE_WIDTH * IMAGE_WIDTH);
+    fn over_all_views(self, radius: f64) -> ImageError {
+        let [head, fixed_light, smooth] = self.squares.map(|squares| GreyError {
+            image_rms: squares.sqrt(),
+            image_rmse: (squares / (VIEWS * PIXELS as f64)).sqrt(),
+        });
+        let both = self.samples_both as f64;
         ImageError {
-            image_rms: self.squares.sqrt(),
-            image_rmse: (self.squares / pixels).sqrt(),
-            silhouette_xor: self.samples_xor as f64 / f64::from(SAMPLES * SAMPLES) / VIEWS,
+            image_rms: head.image_rms,
+            image_rmse: head.image_rmse,
+            fixed_light,
+            smooth,
+            silhouette_xor: self.samples_xor as f64 / SAMPLES_PER_PIXEL / VIEWS,
+            depth_rms: (self.samples_both > 0).then(|| radius * (self.depth_squares / both).sqrt()),
+            ssim: self.similarity / VIEWS,
         }
     }
 }
 
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used)]
-    use super::*;
-    use crate::progress::Silent;
-
-    /// A square plate of side 2 across the z axis, two triangles.
-    fn plate(shift: DVec3) -> TriMesh {
-        let corners = [[-1., -1.], [1., -1.], [1., 1.], [-1., 1.]];
-        let positions = corners.map(|[x, y]| DVec3::new(x, y, 0.0) + shift).to_vec();
-        TriMesh::new(positions, vec![[0, 1, 2], [0, 2, 3]]).unwrap()
-    }
-
-    #[test]
-    fn a_mesh_does_not_differ_from_itself() {
-        let error = image_errors(&plate(DVec3::ZERO), &[&plate(DVec3::ZERO)], &Silent).unwrap();
-        assert_eq!(error, [ImageError { image_rms: 0.0, image_rmse: 0.0, silhouette_xor: 0.0 }]);
-    }
-
-    /// A plate moved out of every picture leaves its own image as the error: area 4 cos over the frame's area 8, grey
-    /// 255 cos, hence a mean square of 255² · mean(cos³) / 2.
-    #[test]
-    fn a_missing_plate_has_the_error_of_its_own_picture() {
-        let gone = image_errors(&plate(DVec3::ZERO), &[&plate(DVec3::X * 100.0)], &Silent).unwrap()[0];
-        let cosines: Vec<f64> = dodecahedron_axes().iter().map(|d| d.z.abs()).collect();
-        let mean_of = |power: i32| cosines.iter().map(|c| c.powi(power)).sum::<f64>() / 10.0;
-        let pixels = f64::from(IMAGE_WIDTH * IMAGE_WIDTH);
-        approx::assert_relative_eq!(gone.image_rmse, 255.0 * (mean_of(3) / 2.0).sqrt(), max_relative = 2e-3);
-        approx::assert_relative_eq!(gone.silhouette_xor, pixels * mean_of(1) / 2.0, max_relative = 2e-3);
-        approx::assert_relative_eq!(gone.image_rms, gone.image_rmse * (20.0 * pixels).sqrt(), max_relative = 1e-12);
-    }
+/// Sum of squared grey differences of two pictures.
+fn squares((a, b): (&Vec<f32>, &Vec<f32>)) -> f64 {
+    a.iter().zip(b).map(|(x, y)| f64::from(x - y) * f64::from(x - y)).sum()
 }
+
+#[cfg(test)]
+mod tests;

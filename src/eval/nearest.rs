@@ -13,14 +13,16 @@
 
 use glam::DVec3;
 
+use crate::geom::area_vector_doubled;
+
 /// Triangles in a leaf, at most.
 const LEAF_SIZE: usize = 4;
 
 /// Below this many triangles a subtree is sorted by one thread.
 const PARALLEL_SIZE: usize = 8192;
 
-/// The tree's depth is at most 31 ([`crate::mesh::MAX_TRIANGLES`]); the search keeps one node per level.
-const STACK_SIZE: usize = 32;
+/// The tree's depth is at most 31 ([`crate::mesh::MAX_TRIANGLES`]); a search keeps one node per level, and one more.
+const STACK_SIZE: usize = 33;
 
 /// A triangle is a sliver when its doubled area is below this share of its longest edge squared: the projection onto
 /// its plane is then too uncertain to say alone where the nearest point is.
@@ -54,6 +56,14 @@ pub(super) struct Nearest {
     pub(super) slot: usize,
     /// Squared distance to it.
     pub(super) distance_squared: f64,
+}
+
+/// Whether any of some triangles faces the same way as a normal, and any against it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Facing {
+    pub(super) same_way: bool,
+    /// Not looked for once one faces the same way.
+    pub(super) against: bool,
 }
 
 impl NearestTriangles {
@@ -107,6 +117,39 @@ impl NearestTriangles {
                 }
             }
         }
+    }
+
+    /// How the triangles that come at least as near to `point` as `radius` face a unit `normal`.
+    pub(super) fn facing(&self, point: DVec3, normal: DVec3, radius: f64) -> Facing {
+        let reach = radius * radius;
+        let mut found = Facing::default();
+        let mut stack = [0_usize; STACK_SIZE];
+        let (mut stacked, first_leaf) = (1, 1 << self.depth);
+        stack[0] = 1;
+        while stacked > 0 {
+            stacked -= 1;
+            let node = stack[stacked];
+            if self.boxes[node].bound(point) > reach {
+                continue;
+            }
+            if node < first_leaf {
+                (stack[stacked], stack[stacked + 1]) = (2 * node, 2 * node + 1);
+                stacked += 2;
+                continue;
+            }
+            for slot in leaf_range(node - first_leaf, self.depth, self.triangles.len()) {
+                let triangle = self.triangles[slot];
+                if distance_squared(point, triangle) <= reach {
+                    let cosine = area_vector_doubled(triangle).dot(normal);
+                    found.same_way |= cosine > 0.0;
+                    found.against |= cosine < 0.0;
+                }
+            }
+            if found.same_way {
+                break;
+            }
+        }
+        found
     }
 
     fn search_leaf(&self, leaf: usize, point: DVec3, best: &mut Nearest) {
@@ -297,6 +340,21 @@ mod tests {
                 prop_assert!((found.distance_squared - brute(&triangles, point)).abs() < ROUNDING);
                 prop_assert_eq!(distance_squared(point, tree.triangles[found.slot]), found.distance_squared);
             }
+        }
+
+        #[test]
+        fn facing_is_what_a_loop_over_all_triangles_finds(
+            triangles in prop::collection::vec(odd_triangle(), 1..200),
+            point in point(),
+            normal in point(),
+            radius in 0.0..1.0,
+        ) {
+            let near = |t: &&[DVec3; 3]| distance_squared(point, **t) <= radius * radius;
+            let cosines: Vec<f64> =
+                triangles.iter().filter(near).map(|&t| area_vector_doubled(t).dot(normal)).collect();
+            let found = NearestTriangles::new(triangles.clone()).facing(point, normal, radius);
+            prop_assert_eq!(found.same_way, cosines.iter().any(|&c| c > 0.0));
+            prop_assert!(found.same_way || found.against == cosines.iter().any(|&c| c < 0.0));
         }
 
         #[test]

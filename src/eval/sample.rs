@@ -52,8 +52,8 @@ impl<'a> SurfaceSamples<'a> {
         self.count
     }
 
-    /// The points `range`, which must lie within the count.
-    pub(super) fn points(&self, range: std::ops::Range<u64>) -> impl Iterator<Item = DVec3> {
+    /// The points `range`, which must lie within the count, each with the number of its triangle.
+    pub(super) fn points(&self, range: std::ops::Range<u64>) -> impl Iterator<Item = (usize, DVec3)> {
         let total = self.area_up_to.last().copied().unwrap_or(0.0);
         let step = total / self.count as f64;
         let mut triangle = None;
@@ -66,7 +66,7 @@ impl<'a> SurfaceSamples<'a> {
             // Rounding can put the last place at the very end, past the last triangle.
             t = t.min(self.corners.len() - 1);
             triangle = Some(t);
-            self.point_in(self.corners[t], i)
+            (t, self.point_in(self.corners[t], i))
         })
     }
 
@@ -113,15 +113,15 @@ mod tests {
         let corners = corners();
         let points: Vec<_> = SurfaceSamples::new(&corners, 1000, 3).points(0..1000).collect();
         assert_eq!(points.len(), 1000);
-        assert_eq!(points.iter().filter(|p| p.x < 2.0).count(), 250);
-        assert_eq!(points.iter().filter(|p| p.x >= 10.0).count(), 750);
+        assert_eq!(points.iter().filter(|(t, p)| *t == 0 && p.x < 2.0).count(), 250);
+        assert_eq!(points.iter().filter(|(t, p)| *t == 2 && p.x >= 10.0).count(), 750);
     }
 
     #[test]
     fn points_lie_in_their_triangle_and_around_its_centre() {
         let corners = corners();
         let samples = SurfaceSamples::new(&corners[..1], 4000, 0);
-        let points: Vec<_> = samples.points(0..4000).collect();
+        let points: Vec<DVec3> = samples.points(0..4000).map(|(_, p)| p).collect();
         assert!(points.iter().all(|p| p.x >= 0.0 && p.y >= 0.0 && p.x + p.y <= 1.0 + f64::EPSILON));
         let mean = points.iter().sum::<DVec3>() / 4000.0;
         // Plain random points would be off by 0.24 / sqrt(4000) = 4e-3.

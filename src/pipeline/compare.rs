@@ -4,13 +4,16 @@ use glam::DVec3;
 use serde::Serialize;
 
 use crate::error::Result;
-use crate::eval::geometric::{GeometricOptions, SampleCount, geometric_error};
-use crate::eval::{ImageError, image_errors};
+use crate::eval::geometric::{Distances, GeometricError, GeometricOptions, SampleCount};
+use crate::eval::{Comparison, GreyError, Reference, TriangleQuality};
 use crate::io::{self, ReadOptions};
 use crate::mesh::TriMesh;
 use crate::pipeline::Observer;
+use crate::pipeline::observation::Observation;
 use crate::pipeline::side_by_side::{ColumnOrder, Portrait, SideBySide};
+use crate::pipeline::surroundings::Surroundings;
 use crate::report::picture::Picture;
+use crate::visibility::{MeasureOptions, Visibility};
 
 /// What [`compare_files`] does.
 #[derive(Debug, Clone)]
@@ -25,6 +28,13 @@ pub struct CompareRequest {
     pub samples: Option<u64>,
     /// Seed of the samples.
     pub seed: u64,
+    /// How the reference's visibility is measured, which tells the error of visible surface from that of hidden surface;
+    /// `None` does not look.
+    pub measure: Option<MeasureOptions>,
+    /// Meshes in the same coordinates that hide the reference while it is looked at.
+    pub occluders: Vec<PathBuf>,
+    /// Where measurements are kept from run to run: a directory, or one file that ends in `.seen`.
+    pub cache: Option<PathBuf>,
     /// Contact sheet to write, PNG.
     pub sheet: Option<PathBuf>,
     /// Upward in the sheet's pictures, any length but 0.
@@ -38,6 +48,12 @@ pub struct CompareRequest {
 pub struct CompareReport {
     /// One entry per test.
     pub tests: Vec<TestReport>,
+    /// Diagonal of the reference's box, model units.
+    pub diagonal: f64,
+    /// V of the reference; `None` where nobody looked.
+    pub reference_visibility: Option<f64>,
+    /// Whether the look was kept by an earlier run, `hit` or `miss`; `None` without a cache.
+    pub cache: Option<&'static str>,
 }
 
 /// How one test differs from the reference.
@@ -47,17 +63,33 @@ pub struct TestReport {
     pub file: PathBuf,
     /// Its triangles.
     pub triangles: usize,
-    /// See [`ImageError::image_rms`].
+    /// See [`crate::eval::ImageError::image_rms`].
     pub image_rms: f64,
-    /// See [`ImageError::image_rmse`]; grey levels.
+    /// See [`crate::eval::ImageError::image_rmse`]; grey levels.
     pub image_rmse: f64,
-    /// See [`ImageError::silhouette_xor`]; pixels per camera.
+    /// See [`crate::eval::ImageError::silhouette_xor`]; pixels per camera.
     pub silhouette_xor: f64,
-    /// Distances between the surfaces.
+    /// Distances between the surfaces, in % of the diagonal.
     pub geometric: GeometricReport,
+    /// The same in model units.
+    pub distances: GeometricReport,
+    /// See [`crate::eval::ImageError::fixed_light`].
+    pub fixed_light: GreyError,
+    /// See [`crate::eval::ImageError::smooth`].
+    pub smooth: GreyError,
+    /// See [`crate::eval::ImageError::ssim`].
+    pub ssim: f64,
+    /// See [`crate::eval::ImageError::depth_rms`]; % of the diagonal.
+    pub depth: Option<f64>,
+    /// The same in model units.
+    pub depth_rms: Option<f64>,
+    /// Triangles that went wrong; degenerate ones include those that were set aside when the file was read.
+    pub quality: TriangleQuality,
+    /// Points whose distance was taken, both directions together.
+    pub samples: u64,
 }
 
-/// Two-sided distances in % of the diagonal of the reference's box.
+/// Two-sided distances, all in one unit.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct GeometricReport {
     /// Mean, of the worse direction.
@@ -66,9 +98,26 @@ pub struct GeometricReport {
     pub rms: f64,
     /// Largest.
     pub max: f64,
+    /// From the reference to the test: what was lost.
+    pub forward: Distances,
+    /// From the test to the reference: what was made up.
+    pub backward: Distances,
+    /// `forward` over visible surface alone; `None` where nobody looked or nothing is visible.
+    pub visible: Option<Distances>,
+    /// `forward` over hidden surface alone; `None` where nobody looked or nothing is hidden.
+    pub hidden: Option<Distances>,
+    /// Root mean square of `forward` with visibility as the weight.
+    pub weighted_rms: Option<f64>,
 }
 
-/// Compares meshes with a reference: pictures, silhouettes, distances.
+/// A mesh to compare, as read.
+struct Test {
+    mesh: TriMesh,
+    /// Triangles of the file that were set aside: they have no area or repeat a vertex.
+    set_aside: usize,
+}
+
+/// Compares meshes with a reference: pictures, silhouettes, distances, triangles.
 ///
 /// # Errors
 /// As its steps.
@@ -76,51 +125,106 @@ pub fn compare_files(request: &CompareRequest, observer: &dyn Observer) -> Resul
     let read = |path: &PathBuf| {
         let loaded = io::read(path, &request.read)?;
         observer.mesh_read(path, &loaded)?;
-        Ok(loaded.mesh)
+        Ok(Test { mesh: loaded.mesh, set_aside: loaded.set_aside.count() })
     };
-    let reference = read(&request.reference)?;
-    let tests: Vec<TriMesh> = request.tests.iter().map(read).collect::<Result<_>>()?;
-    let images = image_errors(&reference, &tests.iter().collect::<Vec<_>>(), observer)?;
-    if let Some(sheet) = &request.sheet {
-        let drawn = contact_sheet(&reference, &tests, &images, request)?;
-        io::write_atomic(sheet, request.force, |writer| drawn.write_png(writer))?;
-    }
     let options = GeometricOptions {
         samples: request.samples.map_or(SampleCount::default(), SampleCount::Exactly),
         seed: request.seed,
     };
-    let report = |((file, mesh), image): ((&PathBuf, &TriMesh), &ImageError)| {
-        let distance = geometric_error(&reference, mesh, options, observer)?.percent();
-        Ok(TestReport {
-            file: file.clone(),
-            triangles: mesh.triangle_count(),
+    let mesh = read(&request.reference)?.mesh;
+    let tests: Vec<Test> = request.tests.iter().map(read).collect::<Result<_>>()?;
+    let (visibility, cache) = look(&mesh, request, observer)?;
+    let visibility_per_triangle = visibility.as_ref().map(Visibility::per_triangle);
+    let reference = Reference::new(&mesh, visibility_per_triangle, options, observer)?;
+    let comparisons: Vec<Comparison> =
+        tests.iter().map(|test| reference.compare(&test.mesh, observer)).collect::<Result<_>>()?;
+    drop(reference);
+    if let Some(sheet) = &request.sheet {
+        let drawn = contact_sheet(&mesh, &tests, &comparisons, request)?;
+        io::write_atomic(sheet, request.force, |writer| drawn.write_png(writer))?;
+    }
+    let diagonal = mesh.bounds().diagonal();
+    let results = request.tests.iter().zip(&tests).zip(&comparisons);
+    Ok(CompareReport {
+        tests: results.map(|((file, test), comparison)| TestReport::new(file, test, comparison)).collect(),
+        diagonal,
+        reference_visibility: visibility.map(|v| v.of_mesh()),
+        cache,
+    })
+}
+
+/// V of the reference, where it is asked for, and what of it a cache had.
+fn look(
+    mesh: &TriMesh,
+    request: &CompareRequest,
+    observer: &dyn Observer,
+) -> Result<(Option<Visibility>, Option<&'static str>)> {
+    let Some(options) = &request.measure else { return Ok((None, None)) };
+    let occluders = Surroundings::read(&request.occluders, &request.read)?;
+    let mut observation = Observation::of(occluders.around(mesh)?, options, request.cache.as_deref(), observer)?;
+    let visibility = observation.visibility(observer)?;
+    observation.keep(&visibility, None)?;
+    Ok((Some(visibility), observation.reused()))
+}
+
+impl TestReport {
+    fn new(file: &Path, test: &Test, comparison: &Comparison) -> Self {
+        let Comparison { image, geometric, quality } = comparison;
+        let percent = 100.0 / geometric.diagonal;
+        Self {
+            file: file.to_owned(),
+            triangles: test.mesh.triangle_count(),
             image_rms: image.image_rms,
             image_rmse: image.image_rmse,
             silhouette_xor: image.silhouette_xor,
-            geometric: GeometricReport { mean: distance.mean, rms: distance.rms, max: distance.max },
-        })
-    };
-    let reports = request.tests.iter().zip(&tests).zip(&images).map(report);
-    Ok(CompareReport { tests: reports.collect::<Result<_>>()? })
+            geometric: GeometricReport::new(&geometric.times(percent)),
+            distances: GeometricReport::new(geometric),
+            fixed_light: image.fixed_light,
+            smooth: image.smooth,
+            ssim: image.ssim,
+            depth: image.depth_rms.map(|rms| rms * percent),
+            depth_rms: image.depth_rms,
+            quality: TriangleQuality { degenerate: quality.degenerate + test.set_aside, ..*quality },
+            samples: geometric.samples,
+        }
+    }
+}
+
+impl GeometricReport {
+    fn new(error: &GeometricError) -> Self {
+        let seen = error.seen;
+        Self {
+            mean: error.mean,
+            rms: error.rms,
+            max: error.max,
+            forward: error.forward,
+            backward: error.backward,
+            visible: seen.and_then(|seen| seen.visible),
+            hidden: seen.and_then(|seen| seen.hidden),
+            weighted_rms: seen.and_then(|seen| seen.weighted_rms),
+        }
+    }
 }
 
 /// Pictures of the reference and of every test, with what differs in red.
 fn contact_sheet(
     reference: &TriMesh,
-    tests: &[TriMesh],
-    errors: &[ImageError],
+    tests: &[Test],
+    comparisons: &[Comparison],
     request: &CompareRequest,
 ) -> Result<Picture> {
     let portrait = |path: &Path, mesh, image_rmse| {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
         Portrait { name, mesh, image_rmse }
     };
-    let others = request.tests.iter().zip(tests).zip(errors);
+    let others = request.tests.iter().zip(tests).zip(comparisons);
     let sheet = SideBySide {
         title: String::new(),
         subtitle: String::new(),
         reference: portrait(&request.reference, reference, None),
-        tests: others.map(|((path, mesh), error)| portrait(path, mesh, Some(error.image_rmse))).collect(),
+        tests: others
+            .map(|((path, test), comparison)| portrait(path, &test.mesh, Some(comparison.image.image_rmse)))
+            .collect(),
         order: ColumnOrder::ReferenceFirst,
         up: DVec3::from_array(request.up),
     };

@@ -22,7 +22,8 @@ fn pictures_are_png_files() {
     let home = directory();
     let arguments = ["render", "cube.off", "-o", "r.png", "--style", "heat", "--size", "64", "--camera", "-1,-1,1"];
     assert_eq!(run(home.path(), &[&arguments[..], &SMALL].concat()).code, 0);
-    let compared = run(home.path(), &["compare", "cube.off", "cube.off", "-o", "c.png", "--samples", "100"]);
+    let arguments = ["compare", "cube.off", "cube.off", "-o", "c.png", "--surface-samples", "100"];
+    let compared = run(home.path(), &[&arguments[..], &SMALL].concat());
     assert_eq!(compared.code, 0, "{}", compared.err);
     for name in ["r.png", "c.png"] {
         assert!(fs::read(home.path().join(name)).unwrap().starts_with(b"\x89PNG"), "{name}");

@@ -41,18 +41,3 @@ fn simplify_json_has_the_promised_keys() {
     }
     assert_eq!(levels.len(), 3);
 }
-
-#[test]
-fn compare_json_has_the_promised_keys() {
-    let home = directory();
-    let object = json(home.path(), &["compare", "cube.off", "cube.off", "bumps.off", "--samples", "100", "--json"]);
-    assert_begins_with(&object, &["schema", "tests"]);
-    let tests = object["tests"].as_array().unwrap();
-    assert_eq!(tests.len(), 2);
-    for test in tests {
-        let promised = ["file", "triangles", "image_rms", "image_rmse", "silhouette_xor", "geometric"];
-        assert_eq!(keys(test), promised);
-        assert_eq!(keys(&test["geometric"]), ["mean", "rms", "max"]);
-    }
-    assert_eq!(tests[0]["image_rmse"], 0.0, "a mesh equals itself");
-}

@@ -1,5 +1,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+use std::sync::atomic::Ordering;
+
 use proptest::prelude::*;
 
 use super::*;
@@ -141,7 +143,7 @@ fn samples_count_per_reference_triangle() {
 fn no_samples_is_an_error() {
     for samples in [SampleCount::Exactly(0), SampleCount::PerTriangle(0)] {
         let result = geometric_error(&cube(), &cube(), GeometricOptions { samples, seed: 0 }, &Silent);
-        assert!(matches!(result, Err(Error::Option { name: "--samples", .. })));
+        assert!(matches!(result, Err(Error::Option { name: "--surface-samples", .. })));
     }
 }
 
