@@ -232,8 +232,19 @@ macro_rules! names {
 pub(super) use names;
 
 names! {
-    /// A mesh format on the command line.
+    /// A mesh format that is read.
     FormatName => Format { Ply => Format::Ply, Obj => Format::Obj, Stl => Format::Stl, Off => Format::Off }
+}
+
+names! {
+    /// A mesh format that is written.
+    OutputFormatName => Format {
+        Ply => Format::Ply,
+        Obj => Format::Obj,
+        Stl => Format::Stl,
+        Off => Format::Off,
+        Glb => Format::Glb,
+    }
 }
 
 names! {

@@ -25,7 +25,7 @@ use super::watch::{Found, Watch};
 pub struct Flags {
     #[command(flatten)]
     input: InputFlags,
-    /// Visibility of each triangle: .ply with heat colours, .npy or .csv
+    /// Visibility of each triangle: .ply or .glb with heat colours, .npy or .csv
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Which camera sees which triangle: .vdg, .npy, or a picture, .png
@@ -34,7 +34,7 @@ pub struct Flags {
     /// The visible share of each triangle in the diagram too, in steps of 1/255
     #[arg(long, requires = "diagram")]
     diagram_fractions: bool,
-    /// Heat colours of a .ply: as in the paper, or readable for every eye
+    /// Heat colours of a .ply or .glb: as in the paper, or readable for every eye
     #[arg(long, value_name = "NAME", default_value = "paper")]
     colour_map: ColourMapName,
     #[command(flatten)]

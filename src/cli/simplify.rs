@@ -14,7 +14,7 @@ use super::collapsing::CollapseFlags;
 use super::console::Console;
 use super::estimate::{Task, cameras_drawing};
 use super::failure::Failure;
-use super::flags::{FormatName, InputFlags, LookingFlags, OccluderFlags};
+use super::flags::{InputFlags, LookingFlags, OccluderFlags, OutputFormatName};
 use super::in_force;
 use super::outputs::{self, Kind, Planned, is_pipe};
 use super::presets;
@@ -28,12 +28,12 @@ use super::watch::{Found, Watch};
 pub struct Flags {
     #[command(flatten)]
     input: InputFlags,
-    /// Result: .ply, .obj, .stl or .off, also with .zst or .gz; - is standard output
+    /// Result: .ply, .obj, .stl, .off or .glb, also with .zst or .gz; - is standard output
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Format of the output, where its name does not say it
     #[arg(long, value_name = "FORMAT")]
-    output_format: Option<FormatName>,
+    output_format: Option<OutputFormatName>,
     /// Stop at this many triangles
     #[arg(short, long, value_name = "N", value_parser = values::triangles, allow_negative_numbers = true, group = "size")]
     triangles: Option<usize>,

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::error::Result;
-use crate::io::{self, Attributes, Loaded, ReadOptions, WriteOptions};
+use crate::io::{self, Attributes, Format, Loaded, ReadOptions, WriteOptions};
 use crate::pipeline::diagram::Record;
 use crate::pipeline::observation::Observation;
 use crate::pipeline::surroundings::Surroundings;
@@ -22,11 +22,11 @@ pub struct MeasureRequest {
     pub measure: MeasureOptions,
     /// Meshes in the same coordinates that hide and are not measured.
     pub occluders: Vec<PathBuf>,
-    /// A mesh file (PLY carries visibility and heat colours), `.npy` or `.csv` to write.
+    /// A mesh file (PLY carries visibility and heat colours, GLB the colours), `.npy` or `.csv` to write.
     pub output: Option<PathBuf>,
     /// Which camera sees which triangle, to be written too.
     pub diagram: Option<DiagramRequest>,
-    /// Heat colours in a PLY output.
+    /// Heat colours in a PLY or GLB output.
     pub colour_map: ColourMap,
     /// Where measurements are kept from run to run: a directory, or one file that ends in `.seen`. A run that writes a
     /// diagram leaves it alone.
@@ -204,8 +204,11 @@ fn write(path: &Path, loaded: &Loaded, visibility: &Visibility, request: &Measur
         _ => {
             let colours: Vec<[u8; 3]> = values.iter().map(|&v| request.colour_map.colour(v)).collect();
             let quality = per_vertex(&loaded.mesh, values);
-            let attributes =
-                Attributes { visibility: Some(values), colours: Some(&colours), vertex_quality: Some(&quality) };
+            let colours = Some(&colours[..]);
+            let attributes = match Format::of_path(path) {
+                Some(Format::Glb) => Attributes { colours, ..Attributes::default() },
+                _ => Attributes { visibility: Some(values), colours, vertex_quality: Some(&quality) },
+            };
             io::write(path, &loaded.mesh, &attributes, &WriteOptions { force: request.force, format: None })
         }
     }
