@@ -9,8 +9,9 @@ use serde::Serialize;
 use super::console::Console;
 use super::estimate::Task;
 use super::failure::Failure;
-use super::flags::{ReadingFlags, UpFlags};
+use super::flags::{LookingFlags, PageFlags, ReadingFlags};
 use super::outputs::{self, Kind, Planned};
+use super::presets;
 use super::system::peak_mib;
 use super::text::{count, table};
 use super::watch::Watch;
@@ -32,7 +33,7 @@ pub struct Flags {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     samples: Option<u64>,
     #[command(flatten)]
-    up: UpFlags,
+    page: PageFlags,
 }
 
 /// The library's report with what only the program knows.
@@ -41,6 +42,7 @@ struct Object<'a> {
     #[serde(flatten)]
     report: &'a CompareReport,
     reference: &'a Path,
+    page: Option<&'a Path>,
     peak_mb: Option<f64>,
 }
 
@@ -53,15 +55,21 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
         samples: flags.samples,
         seed: console.global.seed,
         sheet: flags.output.clone(),
-        up: flags.up.up,
+        up: flags.page.up.up,
+        page: flags.page.request(),
+        measure: presets::measure_options(&LookingFlags::default(), &console.global)?,
         force: console.global.force,
     };
+    let inputs: Vec<&Path> = flags.tests.iter().chain([&flags.reference]).map(PathBuf::as_path).collect();
+    if let Some(path) = &flags.page.page {
+        outputs::check(Planned { path, kind: Kind::Page, format: None }, &inputs, request.force)?;
+    }
     if let Some(path) = &request.sheet {
-        let inputs: Vec<&Path> = flags.tests.iter().chain([&flags.reference]).map(PathBuf::as_path).collect();
         outputs::check(Planned { path, kind: Kind::Picture, format: None }, &inputs, request.force)?;
     }
     let report = compare_files(&request, &Watch::new(console, Task::Compare))?;
-    let object = Object { report: &report, reference: &request.reference, peak_mb: peak_mib() };
+    let (reference, page) = (&request.reference, flags.page.page.as_deref());
+    let object = Object { report: &report, reference, page, peak_mb: peak_mib() };
     console.result(&object, &text(&report, &request), true)
 }
 
@@ -79,11 +87,13 @@ fn text(report: &CompareReport, request: &CompareRequest) -> String {
     };
     let rows: Vec<Vec<String>> = report.tests.iter().map(row).collect();
     let heads = ["file", "triangles", "image", "outline", "mean", "rms", "max"];
-    let sheet = request.sheet.as_ref().map(|p| format!("contact sheet: {}\n", p.display())).unwrap_or_default();
+    let line = |name: &str, path: &Path| format!("{name}: {}\n", path.display());
+    let sheet = request.sheet.as_ref().map(|path| line("contact sheet", path)).unwrap_or_default();
+    let page = request.page.as_ref().map(|page| line("page", &page.output)).unwrap_or_default();
     format!(
         "{}image: root mean square difference in grey levels (0 to 255); outline: pixels per picture in one silhouette \
          only;\nmean, rms, max: distance between the surfaces in % of the diagonal of {}, hidden surface \
-         included\n{sheet}",
+         included\n{sheet}{page}",
         table(&heads, &rows),
         request.reference.display()
     )

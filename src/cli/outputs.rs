@@ -19,6 +19,8 @@ pub enum Kind {
     Diagram,
     /// A PNG picture.
     Picture,
+    /// An HTML page.
+    Page,
 }
 
 impl Kind {
@@ -28,12 +30,17 @@ impl Kind {
             Self::Visibility => &["ply", "glb", "npy", "csv"],
             Self::Diagram => &["vdg", "npy", "png"],
             Self::Picture => &["png"],
+            Self::Page => &["html"],
         }
     }
 
     /// The flag that names such an output.
     fn flag(self) -> &'static str {
-        if self == Self::Diagram { "--diagram" } else { "--output" }
+        match self {
+            Self::Diagram => "--diagram",
+            Self::Page => "--report",
+            Self::Mesh | Self::Visibility | Self::Picture => "--output",
+        }
     }
 }
 
@@ -124,7 +131,7 @@ fn needs_name(kind: Kind) -> Error {
         Kind::Mesh => "; .zst or .gz behind it compresses",
         Kind::Visibility => "; .zst or .gz behind .ply and .glb compresses",
         Kind::Diagram => "; .zst or .gz behind .vdg compresses",
-        Kind::Picture => "",
+        Kind::Picture | Kind::Page => "",
     };
     Error::Option { name: kind.flag(), message: message + more }
 }
@@ -193,6 +200,8 @@ mod tests {
             ("x.png.gz", Kind::Picture),
             ("x.npy.zst", Kind::Visibility),
             ("x.ply", Kind::Diagram),
+            ("x.html.gz", Kind::Page),
+            ("-", Kind::Page),
             ("x.npy.gz", Kind::Diagram),
             ("-", Kind::Mesh),
         ];

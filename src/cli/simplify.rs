@@ -14,7 +14,7 @@ use super::collapsing::CollapseFlags;
 use super::console::Console;
 use super::estimate::{Task, cameras_drawing};
 use super::failure::Failure;
-use super::flags::{InputFlags, LookingFlags, OccluderFlags, OutputFormatName};
+use super::flags::{InputFlags, LookingFlags, OccluderFlags, OutputFormatName, PageFlags};
 use super::in_force;
 use super::outputs::{self, Kind, Planned, is_pipe};
 use super::presets;
@@ -48,6 +48,8 @@ pub struct Flags {
     #[arg(conflicts_with_all = ["triangles", "ratio"])]
     lods: Vec<LevelSize>,
     #[command(flatten)]
+    page: PageFlags,
+    #[command(flatten)]
     collapse: CollapseFlags,
     #[command(flatten)]
     looking: LookingFlags,
@@ -66,6 +68,7 @@ struct Object<'a> {
     #[serde(flatten)]
     found: Found,
     occluders: &'a [PathBuf],
+    page: Option<&'a PathBuf>,
     options: Value,
 }
 
@@ -84,6 +87,7 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
         peak_mb: peak_mib(),
         found: watch.found(),
         occluders: &request.occluders,
+        page: request.page.as_ref().map(|page| &page.output),
         options: in_force::simplify(&request),
     };
     let to_stdout = !request.levels.iter().any(|level| is_pipe(&level.output));
@@ -106,6 +110,7 @@ fn request(flags: &Flags, console: &Console) -> outsight::Result<SimplifyRequest
         levels: levels(flags)?,
         format: flags.output_format.map(Into::into),
         cache: flags.cache.place()?,
+        page: flags.page.request(),
         force: console.global.force,
     })
 }
@@ -139,6 +144,9 @@ fn check_outputs(request: &SimplifyRequest, json: bool) -> outsight::Result<()> 
             return Err(Error::Option { name: "--output", message });
         }
         outputs::check(Planned { path, kind: Kind::Mesh, format: request.format }, &inputs, request.force)?;
+    }
+    if let Some(page) = &request.page {
+        outputs::check(Planned { path: &page.output, kind: Kind::Page, format: None }, &inputs, request.force)?;
     }
     Ok(())
 }

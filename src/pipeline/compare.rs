@@ -9,8 +9,11 @@ use crate::eval::{ImageError, image_errors};
 use crate::io::{self, ReadOptions};
 use crate::mesh::TriMesh;
 use crate::pipeline::Observer;
+use crate::pipeline::observation::Surrounded;
+use crate::pipeline::page::{Column, Exhibit, PageRequest, Show, shown_name};
 use crate::pipeline::side_by_side::{ColumnOrder, Portrait, SideBySide};
 use crate::report::picture::Picture;
+use crate::visibility::MeasureOptions;
 
 /// What [`compare_files`] does.
 #[derive(Debug, Clone)]
@@ -29,7 +32,11 @@ pub struct CompareRequest {
     pub sheet: Option<PathBuf>,
     /// Upward in the sheet's pictures, any length but 0.
     pub up: [f64; 3],
-    /// Replace a sheet that is there.
+    /// A page that shows the meshes and what differs.
+    pub page: Option<PageRequest>,
+    /// How the page measures visibility.
+    pub measure: MeasureOptions,
+    /// Replace outputs that are there.
     pub force: bool,
 }
 
@@ -101,7 +108,46 @@ pub fn compare_files(request: &CompareRequest, observer: &dyn Observer) -> Resul
         })
     };
     let reports = request.tests.iter().zip(&tests).zip(&images).map(report);
-    Ok(CompareReport { tests: reports.collect::<Result<_>>()? })
+    let report = CompareReport { tests: reports.collect::<Result<_>>()? };
+    if let Some(page) = &request.page {
+        let show = show(&reference, &tests, request, observer)?;
+        let show = Show { errors: images, columns: distances(&report.tests), ..show };
+        show.write(page, request.force, observer)?;
+    }
+    Ok(report)
+}
+
+/// What a page shows of the meshes, each looked at by itself.
+fn show<'a>(
+    reference: &'a TriMesh,
+    tests: &'a [TriMesh],
+    request: &'a CompareRequest,
+    observer: &dyn Observer,
+) -> Result<Show<'a>> {
+    let exhibit = |(path, mesh): (&PathBuf, &'a TriMesh)| {
+        let alone = Surrounded { mesh, occluders: &[] };
+        Exhibit::look(shown_name(path), alone, &request.measure, observer)
+    };
+    Ok(Show {
+        deed: "compared",
+        original: exhibit((&request.reference, reference))?,
+        results: request.tests.iter().zip(tests).map(exhibit).collect::<Result<_>>()?,
+        errors: Vec::new(),
+        columns: Vec::new(),
+        measure: &request.measure,
+        notes: vec![
+            "Distances between the surfaces are in % of the diagonal of the first mesh, hidden surface included."
+                .to_owned(),
+        ],
+    })
+}
+
+fn distances(tests: &[TestReport]) -> Vec<Column> {
+    let column = |head, of: fn(&GeometricReport) -> f64| {
+        let cells = tests.iter().map(|test| format!("{:.4} %", of(&test.geometric))).collect();
+        Column { head, cells }
+    };
+    vec![column("Mean distance", |g| g.mean), column("RMS distance", |g| g.rms), column("Largest", |g| g.max)]
 }
 
 /// Pictures of the reference and of every test, with what differs in red.

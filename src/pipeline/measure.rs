@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::io::{self, Attributes, Format, Loaded, ReadOptions, WriteOptions};
 use crate::pipeline::diagram::Record;
 use crate::pipeline::observation::Observation;
+use crate::pipeline::page::{Exhibit, PageRequest, Show, shown_name};
 use crate::pipeline::surroundings::Surroundings;
 use crate::pipeline::{Clock, DiagramRequest, Observer};
 use crate::report::colour::ColourMap;
@@ -31,7 +32,9 @@ pub struct MeasureRequest {
     /// Where measurements are kept from run to run: a directory, or one file that ends in `.seen`. A run that writes a
     /// diagram leaves it alone.
     pub cache: Option<PathBuf>,
-    /// Replace an output that is there.
+    /// A page that shows what was measured.
+    pub page: Option<PageRequest>,
+    /// Replace outputs that are there.
     pub force: bool,
 }
 
@@ -155,6 +158,14 @@ pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result
     if let (Some(record), Some(diagram)) = (record, &request.diagram) {
         record.write(&loaded, observation.subject()?, &diagram.output, request.force)?;
     }
+    if let Some(page) = &request.page {
+        let name = shown_name(&request.input);
+        show(Exhibit { name, mesh: &loaded.mesh, visibility: visibility.clone() }, request).write(
+            page,
+            request.force,
+            observer,
+        )?;
+    }
     Ok(MeasureReport {
         triangles: loaded.mesh.triangle_count(),
         cameras: Some(visibility.cameras()).filter(|&n| n > 0),
@@ -175,6 +186,29 @@ pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result
         rays: visibility.details().rays,
         standard_error: visibility.details().standard_error.as_ref().map(ErrorSummary::from),
     })
+}
+
+/// What a page shows of a measurement.
+fn show<'a>(original: Exhibit<'a>, request: &'a MeasureRequest) -> Show<'a> {
+    Show {
+        deed: "measured",
+        original,
+        results: Vec::new(),
+        errors: Vec::new(),
+        columns: Vec::new(),
+        measure: &request.measure,
+        notes: hiding_too(&request.occluders),
+    }
+}
+
+/// A sentence about occluders, where there are any.
+pub(super) fn hiding_too(occluders: &[PathBuf]) -> Vec<String> {
+    let names: Vec<String> = occluders.iter().map(|path| shown_name(path)).collect();
+    if names.is_empty() {
+        Vec::new()
+    } else {
+        vec![format!("Hidden also by {}, which is not shown.", names.join(", "))]
+    }
 }
 
 fn look(
