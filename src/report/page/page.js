@@ -36,8 +36,8 @@
   };
   /** Degrees up and down that the eye sees. */
   const FIELD = 28;
-  /** Few models reach into the corners of a view, so the eye stands nearer than the unit sphere would need. */
-  const SNUG = 0.85;
+  /** Room around the original at first. */
+  const MARGIN = 1.06;
   const KEY_TURN = Math.PI / 24;
   const KEY_ZOOM = 0.87;
 
@@ -87,6 +87,7 @@
         scene.traverse((part) => { if (part.isMesh) this.surfaces.push(part); });
         for (const surface of this.surfaces) surface.material = this.material;
         this.scene.add(scene);
+        this.scene.updateMatrixWorld();
         this.canvas.setAttribute('aria-busy', 'false');
       } catch (error) {
         trouble(this.canvas, `This model could not be shown: ${error.message}`);
@@ -132,7 +133,7 @@
       const numbers = (name) => new THREE.Vector3(...element.dataset[name].split(' ').map(Number)).normalize();
       this.camera = new THREE.PerspectiveCamera(FIELD);
       this.camera.up.copy(numbers('up'));
-      this.camera.position.copy(numbers('toward')).multiplyScalar(SNUG / Math.sin(FIELD * Math.PI / 360));
+      this.camera.position.copy(numbers('toward')).multiplyScalar(1 / Math.sin(FIELD * Math.PI / 360));
       const panes = element.querySelector('.panes');
       this.controls = new THREE.OrbitControls(this.camera, panes);
       this.controls.minDistance = 0.2;
@@ -150,6 +151,24 @@
       element.addEventListener('change', ({ target }) => this.changed(target));
       element.querySelector('[name=reset]').addEventListener('click', () => this.controls.reset());
       new ResizeObserver(() => this.redraw()).observe(panes);
+    }
+
+    /** Puts the eye where it just sees the whole original, which leaves corners of the unit sphere empty. */
+    fit() {
+      this.camera.updateMatrixWorld();
+      const slope = Math.tan(FIELD * Math.PI / 360);
+      const place = new THREE.Vector3();
+      let missing = -Infinity;
+      for (const { geometry, matrixWorld } of this.panes[0].surfaces) {
+        const { position } = geometry.attributes;
+        for (let vertex = 0; vertex < position.count; vertex += 1) {
+          place.fromBufferAttribute(position, vertex).applyMatrix4(matrixWorld).applyMatrix4(this.camera.matrixWorldInverse);
+          missing = Math.max(missing, Math.max(Math.abs(place.x), Math.abs(place.y)) / slope + place.z);
+        }
+      }
+      if (missing > -Infinity) this.camera.position.setLength(MARGIN * (this.camera.position.length() + missing));
+      this.controls.update();
+      this.controls.saveState();
     }
 
     key(event) {
@@ -190,6 +209,7 @@
     for (const viewer of viewers.map((element) => new Viewer(element))) {
       for (const pane of viewer.panes) {
         await pane.load();
+        if (pane === viewer.panes[0]) viewer.fit();
         viewer.redraw();
       }
     }
