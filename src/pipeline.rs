@@ -16,6 +16,7 @@ mod disagreement;
 mod explain;
 mod measure;
 mod observation;
+mod page;
 mod render;
 mod side_by_side;
 mod simplify;
@@ -33,6 +34,7 @@ pub use measure::{
     ErrorSummary, MeasureReport, MeasureRequest, MeasureSeconds, RescueSummary, VisibilitySummary, measure_file,
 };
 pub use observation::cache_is_file;
+pub use page::PageRequest;
 pub use render::{RenderRequest, Style, render_file};
 pub use side_by_side::{ColumnOrder, Portrait, SideBySide};
 pub use simplify::{
@@ -46,6 +48,7 @@ use std::time::Instant;
 use crate::error::Result;
 use crate::io::{self, Attributes, Loaded, WriteOptions};
 use crate::pipeline::observation::Observation;
+use crate::pipeline::simplify::{Before, show};
 use crate::pipeline::surroundings::Surroundings;
 use crate::progress::{CancelFlag, Progress, Silent};
 use crate::visibility::{Hidden, KeptFault, Look, MeasureOptions, Visibility};
@@ -81,12 +84,17 @@ pub fn run_simplify(request: &SimplifyRequest, observer: &dyn Observer) -> Resul
         Metric::Quadric => None,
     };
     let triangles = mesh.triangle_count();
+    let before = request.page.as_ref().map(|_| (mesh.clone(), look.as_ref().map(|look| look.visibility.clone())));
     let simplified = simplify_seen(mesh, look, request, observer)?;
     seconds.simplify = clock.lap();
     observer.check()?;
     for (level, wanted) in simplified.levels.iter().zip(&request.levels) {
         let options = WriteOptions { force: request.force, format: request.format };
         io::write(&wanted.output, &level.mesh, &Attributes::default(), &options)?;
+    }
+    if let (Some(page), Some((mesh, visibility))) = (&request.page, before) {
+        let before = Before { mesh: &mesh, visibility, occluders: &occluders };
+        show(before, &simplified, request, observer)?.write(page, request.force, observer)?;
     }
     seconds.write = clock.lap();
     seconds.total = clock.total();

@@ -351,7 +351,7 @@ fn welding_is_done_on_request() {
 #[test]
 fn pipe_is_read_by_its_content() {
     let folder = tempfile::tempdir().unwrap();
-    for format in Format::ALL {
+    for format in Format::ALL.into_iter().filter(|&format| format != Format::Glb) {
         let path = folder.path().join(format!("a.{}", format.extension()));
         io::write(&path, &cube(), &Attributes::default(), &WriteOptions::default()).unwrap();
         let loaded = parse("-", &std::fs::read(&path).unwrap());

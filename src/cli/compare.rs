@@ -12,7 +12,7 @@ use super::cache::CacheFlags;
 use super::console::Console;
 use super::estimate::Task;
 use super::failure::Failure;
-use super::flags::{LookingFlags, OccluderFlags, ReadingFlags, UpFlags};
+use super::flags::{LookingFlags, OccluderFlags, PageFlags, ReadingFlags};
 use super::in_force;
 use super::outputs::{self, Kind, Planned};
 use super::presets;
@@ -37,13 +37,13 @@ pub struct Flags {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MAX_SAMPLES))]
     surface_samples: Option<u64>,
     #[command(flatten)]
-    up: UpFlags,
-    #[command(flatten)]
     looking: LookingFlags,
     #[command(flatten)]
     around: OccluderFlags,
     #[command(flatten)]
     cache: CacheFlags,
+    #[command(flatten)]
+    page: PageFlags,
 }
 
 /// The library's report with what only the program knows.
@@ -53,6 +53,7 @@ struct Object<'a> {
     report: &'a CompareReport,
     reference: &'a Path,
     occluders: &'a [PathBuf],
+    page: Option<&'a Path>,
     peak_mb: Option<f64>,
     options: Value,
 }
@@ -67,16 +68,20 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
         read: flags.reading.options(&console.global),
         samples: flags.surface_samples,
         seed: console.global.seed,
-        measure: Some(measure),
+        measure,
         occluders: flags.around.occluders.clone(),
         cache: flags.cache.place()?,
         sheet: flags.output.clone(),
-        up: flags.up.up,
+        up: flags.page.up.up,
+        page: flags.page.request(),
         force: console.global.force,
     };
+    let others = flags.tests.iter().chain(&request.occluders);
+    let inputs: Vec<&Path> = others.chain([&flags.reference]).map(PathBuf::as_path).collect();
+    if let Some(path) = &flags.page.page {
+        outputs::check(Planned { path, kind: Kind::Page, format: None }, &inputs, request.force)?;
+    }
     if let Some(path) = &request.sheet {
-        let others = flags.tests.iter().chain(&request.occluders);
-        let inputs: Vec<&Path> = others.chain([&flags.reference]).map(PathBuf::as_path).collect();
         outputs::check(Planned { path, kind: Kind::Picture, format: None }, &inputs, request.force)?;
     }
     let task = Task::Compare { resolution: flags.looking.resolution.unwrap_or(0) };
@@ -85,6 +90,7 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
         report: &report,
         reference: &request.reference,
         occluders: &request.occluders,
+        page: flags.page.page.as_deref(),
         peak_mb: peak_mib(),
         options,
     };
@@ -92,7 +98,9 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
 }
 
 fn text(report: &CompareReport, request: &CompareRequest) -> String {
-    let sheet = request.sheet.as_ref().map(|p| format!("contact sheet: {}\n", p.display())).unwrap_or_default();
+    let line = |name: &str, path: &Path| format!("{name}: {}\n", path.display());
+    let sheet = request.sheet.as_ref().map(|path| line("contact sheet", path)).unwrap_or_default();
+    let page = request.page.as_ref().map(|page| line("page", &page.output)).unwrap_or_default();
     let rows = |row: fn(&TestReport) -> Vec<String>| -> Vec<Vec<String>> {
         let named = |test: &TestReport| std::iter::once(test.file.display().to_string()).chain(row(test)).collect();
         report.tests.iter().map(named).collect()
@@ -104,7 +112,7 @@ fn text(report: &CompareReport, request: &CompareRequest) -> String {
          {}distance in % of the diagonal ({}) of {}: mean, rms, max of the worse direction;\nrms from each mesh to the \
          other, and from visible, from hidden and from all surface of REF, weighted by visibility\n\n\
          {}flipped: against the surface of REF nearest to them, and their share of the area; edges: with three or \
-         more\ntriangles, and how many more than REF has\n{sheet}",
+         more\ntriangles, and how many more than REF has\n{sheet}{page}",
         table(&["pictures", "triangles", "head light", "fixed", "smooth", "SSIM", "outline", "depth"], &rows(pictures)),
         table(
             &["distances", "mean", "rms", "max", "REF to test", "test to REF", "visible", "hidden", "weighted"],

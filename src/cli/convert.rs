@@ -11,7 +11,7 @@ use serde::Serialize;
 use super::console::Console;
 use super::estimate::Task;
 use super::failure::Failure;
-use super::flags::{FormatName, InputFlags};
+use super::flags::{InputFlags, OutputFormatName};
 use super::outputs::{self, Kind, Planned, is_pipe};
 use super::text::count;
 use super::watch::{Found, Watch};
@@ -20,12 +20,12 @@ use super::watch::{Found, Watch};
 pub struct Flags {
     #[command(flatten)]
     input: InputFlags,
-    /// Result: .ply, .obj, .stl or .off, also with .zst or .gz; - is standard output
+    /// Result: .ply, .obj, .stl, .off or .glb, also with .zst or .gz; - is standard output
     #[arg(value_name = "OUT")]
     output: PathBuf,
     /// Format of OUT, where its name does not say it
     #[arg(long, value_name = "FORMAT")]
-    output_format: Option<FormatName>,
+    output_format: Option<OutputFormatName>,
 }
 
 #[derive(Debug, Serialize)]

@@ -6,8 +6,8 @@ use clap::Args;
 use outsight::error::{Error, Result};
 use outsight::io::{self, ReadOptions};
 use outsight::pipeline::{
-    self, CompareReport, CompareRequest, LevelRequest, MeasureReport, MeasureRequest, Metric, RenderRequest,
-    SimplifyReport, SimplifyRequest, Style, TestReport,
+    self, CompareReport, CompareRequest, LevelRequest, MeasureReport, MeasureRequest, Metric, PageRequest,
+    RenderRequest, SimplifyReport, SimplifyRequest, Style, TestReport,
 };
 use outsight::report::colour::ColourMap;
 use outsight::simplify::{SimplifyOptions, Target};
@@ -61,6 +61,7 @@ struct Files {
     quadric: PathBuf,
     visibility: PathBuf,
     differences: PathBuf,
+    page: PathBuf,
     json: PathBuf,
 }
 
@@ -69,16 +70,17 @@ impl Files {
         let file = |name: &str| directory.join(name);
         Self {
             model: file(bundled::NAME),
-            heat_mesh: file("heat.ply"),
+            heat_mesh: file("heat.glb"),
             heat_picture: file("heat.png"),
             quadric: file("gearbox-quadric.ply"),
             visibility: file("gearbox-visibility.ply"),
             differences: file("differences.png"),
+            page: file("report.html"),
             json: file("demo.json"),
         }
     }
 
-    fn all(&self) -> [&Path; 7] {
+    fn all(&self) -> [&Path; 8] {
         [
             &self.model,
             &self.heat_mesh,
@@ -86,6 +88,7 @@ impl Files {
             &self.quadric,
             &self.visibility,
             &self.differences,
+            &self.page,
             &self.json,
         ]
     }
@@ -108,7 +111,7 @@ pub fn run(_flags: &Flags, console: &Console) -> std::result::Result<(), Failure
     let visibility = pipeline::run_simplify(&visibility, &watch)?;
 
     console.note("comparing both with the original, from 20 cameras that were not used before");
-    let compare = pipeline::compare_files(&compare_request(&files, console.global.seed), &watch)?;
+    let compare = pipeline::compare_files(&compare_request(&files, looking, console.global.seed), &watch)?;
 
     let image_error_saved = saved(&compare);
     let triangles = measure.triangles;
@@ -139,6 +142,7 @@ fn measure_request(files: &Files, looking: &MeasureOptions) -> MeasureRequest {
         occluders: Vec::new(),
         output: Some(files.heat_mesh.clone()),
         diagram: None,
+        page: None,
         colour_map: ColourMap::Paper,
         cache: None,
         force: true,
@@ -175,22 +179,24 @@ fn simplified(input: &Path, output: &Path, metric: Metric, looking: &MeasureOpti
         levels: vec![LevelRequest { targets: vec![Target::Ratio(RATIO)], output: output.to_owned() }],
         format: None,
         cache: None,
+        page: None,
         force: true,
     }
 }
 
-fn compare_request(files: &Files, seed: u64) -> CompareRequest {
+fn compare_request(files: &Files, looking: MeasureOptions, seed: u64) -> CompareRequest {
     CompareRequest {
         reference: files.model.clone(),
         tests: vec![files.quadric.clone(), files.visibility.clone()],
         read: ReadOptions::default(),
         samples: None,
         seed,
-        measure: None,
         occluders: Vec::new(),
         cache: None,
         sheet: Some(files.differences.clone()),
         up: UP,
+        page: Some(PageRequest { output: files.page.clone(), up: UP }),
+        measure: looking,
         force: true,
     }
 }
@@ -237,11 +243,13 @@ fn explanation(report: &Report) -> String {
 
 fn next_steps(files: &Files) -> String {
     format!(
-        "Look at   {}   original, both results, and in red where they differ\n\
+        "Open      {}        all of it on one page, with models to turn\n\
+         Look at   {}   original, both results, and in red where they differ\n\
          Look at   {}          how well each triangle is seen\n\
          Numbers   {}\n\n\
          Try next  outsight simplify YOUR.ply -o small.ply -r 0.05\n          \
          outsight compare YOUR.ply small.ply -o differences.png\n",
+        files.page.display(),
         files.differences.display(),
         files.heat_picture.display(),
         files.json.display(),

@@ -9,6 +9,7 @@ use outsight::backend::BackendKind;
 use outsight::camera::CameraWeights;
 use outsight::error::{Error, Result};
 use outsight::io::{Format, ReadOptions};
+use outsight::pipeline::PageRequest;
 use outsight::report::colour::ColourMap;
 use outsight::visibility::{DepthRescue, Estimator, PartlySeen, Sides};
 
@@ -100,6 +101,23 @@ pub struct UpFlags {
     #[arg(long, value_name = "X,Y,Z", default_value = "0,0,1", allow_hyphen_values = true)]
     #[arg(value_parser = values::direction)]
     pub up: [f64; 3],
+}
+
+/// The page that shows a result.
+#[derive(Debug, Clone, Args)]
+pub struct PageFlags {
+    /// Write a page with numbers, plots, pictures and models to turn: .html, one file that loads nothing
+    #[arg(long = "report", value_name = "FILE")]
+    pub page: Option<PathBuf>,
+    #[command(flatten)]
+    pub up: UpFlags,
+}
+
+impl PageFlags {
+    /// The library's request for these flags.
+    pub fn request(&self) -> Option<PageRequest> {
+        self.page.clone().map(|output| PageRequest { output, up: self.up.up })
+    }
 }
 
 /// How visibility is measured.
@@ -232,8 +250,19 @@ macro_rules! names {
 pub(super) use names;
 
 names! {
-    /// A mesh format on the command line.
+    /// A mesh format that is read.
     FormatName => Format { Ply => Format::Ply, Obj => Format::Obj, Stl => Format::Stl, Off => Format::Off }
+}
+
+names! {
+    /// A mesh format that is written.
+    OutputFormatName => Format {
+        Ply => Format::Ply,
+        Obj => Format::Obj,
+        Stl => Format::Stl,
+        Off => Format::Off,
+        Glb => Format::Glb,
+    }
 }
 
 names! {

@@ -13,7 +13,8 @@ Exit codes: 0 done, 1 the answer is no, 2 wrong use, 3 bad input, 4 output not w
 /// Behind `outsight demo --help`.
 pub const DEMO: &str = "\
 Measures the bundled gearbox, simplifies it to 5 % without and with visibility, compares both
-with the original, and writes meshes, pictures and demo.json. Replaces its files of earlier runs.
+with the original, and writes meshes, pictures, report.html and demo.json. Replaces its files of
+earlier runs.
 
 Example:
   outsight demo";
@@ -31,6 +32,7 @@ Examples:
   outsight measure part.ply                   visibility of the mesh, in a few lines
   outsight measure part.ply -o heat.ply       triangles coloured, with the property visibility
   outsight measure part.ply -o v.npy --json   one number per triangle for NumPy, and a summary
+  outsight measure part.ply --report part.html   one page: plots, pictures, the model to turn
   outsight measure part.ply --preset paper    as Zhang & Turk 2002 did
   outsight measure part.ply --hemisphere +z   never seen from below
   outsight measure part.ply --occluder floor.ply --occluder wall.ply
@@ -71,6 +73,7 @@ Examples:
   outsight simplify part.obj -o small.stl -t 20000 -e 0.1    20,000 triangles, or error 0.1
   outsight simplify part.ply -o part-{}.ply --lods 0.5,0.25,0.1
   outsight simplify part.ply -o qb.ply -r 0.05 --metric quadric
+  outsight simplify part.ply -o small.glb -r 0.05 --report small.html
   outsight simplify - -o - --output-format ply -r 0.1 < in.stl > out.ply";
 
 /// Behind `outsight compare --help`.
@@ -79,7 +82,7 @@ REF is looked at too, to tell error that shows from error that is hidden.
 
 Examples:
   outsight compare part.ply small.ply
-  outsight compare part.ply qb.ply vg.ply -o differences.png
+  outsight compare part.ply qb.ply vg.ply -o differences.png --report differences.html
   outsight compare part.ply small.ply --cache looks          reuse what simplify saw
   outsight compare part.ply small.ply --json | jq '.tests[0].image_rmse'";
 

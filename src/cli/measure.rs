@@ -13,7 +13,7 @@ use super::cache::{CacheFlags, reused};
 use super::console::Console;
 use super::estimate::{Task, cameras_drawing};
 use super::failure::Failure;
-use super::flags::{ColourMapName, InputFlags, LookingFlags, OccluderFlags};
+use super::flags::{ColourMapName, InputFlags, LookingFlags, OccluderFlags, PageFlags};
 use super::in_force;
 use super::outputs::{self, Kind, Planned, ending_of};
 use super::presets;
@@ -25,7 +25,7 @@ use super::watch::{Found, Watch};
 pub struct Flags {
     #[command(flatten)]
     input: InputFlags,
-    /// Visibility of each triangle: .ply with heat colours, .npy or .csv
+    /// Visibility of each triangle: .ply or .glb with heat colours, .npy or .csv
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Which camera sees which triangle: .vdg, .npy, or a picture, .png
@@ -34,9 +34,11 @@ pub struct Flags {
     /// The visible share of each triangle in the diagram too, in steps of 1/255
     #[arg(long, requires = "diagram")]
     diagram_fractions: bool,
-    /// Heat colours of a .ply: as in the paper, or readable for every eye
+    /// Heat colours of a .ply or .glb: as in the paper, or readable for every eye
     #[arg(long, value_name = "NAME", default_value = "paper")]
     colour_map: ColourMapName,
+    #[command(flatten)]
+    page: PageFlags,
     #[command(flatten)]
     looking: LookingFlags,
     #[command(flatten)]
@@ -56,6 +58,7 @@ struct Object<'a> {
     output: &'a Option<PathBuf>,
     occluders: &'a [PathBuf],
     diagram: Option<&'a PathBuf>,
+    page: Option<&'a PathBuf>,
     options: Value,
 }
 
@@ -73,6 +76,7 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
         output: &request.output,
         occluders: &request.occluders,
         diagram: request.diagram.as_ref().map(|diagram| &diagram.output),
+        page: request.page.as_ref().map(|page| &page.output),
         options: in_force::measure(&request.measure),
     };
     console.result(&object, &text(&report, &request), true)
@@ -88,6 +92,7 @@ fn request(flags: &Flags, console: &Console) -> outsight::Result<MeasureRequest>
         diagram: flags.diagram.clone().map(|output| DiagramRequest { output, fractions: flags.diagram_fractions }),
         colour_map: flags.colour_map.into(),
         cache: flags.cache.place()?,
+        page: flags.page.request(),
         force: console.global.force,
     })
 }
@@ -101,6 +106,10 @@ fn check_outputs(request: &MeasureRequest) -> outsight::Result<()> {
     }
     if let Some(path) = diagram {
         let planned = Planned { path, kind: Kind::Diagram, format: None };
+        outputs::check(planned, &inputs, request.force)?;
+    }
+    if let Some(page) = &request.page {
+        let planned = Planned { path: &page.output, kind: Kind::Page, format: None };
         outputs::check(planned, &inputs, request.force)?;
     }
     if diagram.is_some() && diagram == request.output.as_ref() {
@@ -155,6 +164,9 @@ fn text(report: &MeasureReport, request: &MeasureRequest) -> String {
     }
     if let Some(diagram) = &request.diagram {
         rows.push(("diagram", diagram.output.display().to_string()));
+    }
+    if let Some(page) = &request.page {
+        rows.push(("page", page.output.display().to_string()));
     }
     pairs(&rows)
 }

@@ -13,27 +13,34 @@ const COMPRESSED: [&str; 2] = ["zst", "gz"];
 pub enum Kind {
     /// A mesh in any format.
     Mesh,
-    /// The visibility of each triangle: PLY, NumPy or CSV.
+    /// The visibility of each triangle: PLY, GLB, NumPy or CSV.
     Visibility,
     /// Which camera sees which triangle: diagram file, NumPy or a picture.
     Diagram,
     /// A PNG picture.
     Picture,
+    /// An HTML page.
+    Page,
 }
 
 impl Kind {
     fn endings(self) -> &'static [&'static str] {
         match self {
-            Self::Mesh => &["ply", "obj", "stl", "off"],
-            Self::Visibility => &["ply", "npy", "csv"],
+            Self::Mesh => &["ply", "obj", "stl", "off", "glb"],
+            Self::Visibility => &["ply", "glb", "npy", "csv"],
             Self::Diagram => &["vdg", "npy", "png"],
             Self::Picture => &["png"],
+            Self::Page => &["html"],
         }
     }
 
     /// The flag that names such an output.
     fn flag(self) -> &'static str {
-        if self == Self::Diagram { "--diagram" } else { "--output" }
+        match self {
+            Self::Diagram => "--diagram",
+            Self::Page => "--report",
+            Self::Mesh | Self::Visibility | Self::Picture => "--output",
+        }
     }
 }
 
@@ -64,7 +71,7 @@ pub fn check(output: Planned<'_>, inputs: &[&Path], force: bool) -> Result<()> {
             (Kind::Mesh, Some(_)) => Ok(()),
             (Kind::Mesh, None) => Err(Error::Option {
                 name: "--output-format",
-                message: "standard output has no name that says the format; give ply, obj, stl or off".to_owned(),
+                message: "standard output has no name that says the format; give ply, obj, stl, off or glb".to_owned(),
             }),
             _ => Err(needs_name(output.kind)),
         };
@@ -113,7 +120,7 @@ fn check_ending(output: Planned<'_>) -> Result<()> {
     // A hidden file such as `.ply` has a name and no ending.
     let ending = if output.format.is_some() { String::new() } else { ending_of(&base) };
     let known = output.format.is_some() || output.kind.endings().contains(&ending.as_str());
-    let may_compress = output.kind == Kind::Mesh || ["ply", "vdg"].contains(&ending.as_str());
+    let may_compress = output.kind == Kind::Mesh || ["ply", "glb", "vdg"].contains(&ending.as_str());
     if known && (may_compress || !compressed) { Ok(()) } else { Err(needs_name(output.kind)) }
 }
 
@@ -122,9 +129,9 @@ fn needs_name(kind: Kind) -> Error {
     let message = format!("name a file that ends in {}", endings.join(", "));
     let more = match kind {
         Kind::Mesh => "; .zst or .gz behind it compresses",
-        Kind::Visibility => "; .zst or .gz behind .ply compresses",
+        Kind::Visibility => "; .zst or .gz behind .ply and .glb compresses",
         Kind::Diagram => "; .zst or .gz behind .vdg compresses",
-        Kind::Picture => "",
+        Kind::Picture | Kind::Page => "",
     };
     Error::Option { name: kind.flag(), message: message + more }
 }
@@ -185,7 +192,7 @@ mod tests {
 
     #[test]
     fn unknown_ending_is_a_usage_error() {
-        for name in ["x", "x.png", "x.glb", "x.zst", ".ply"] {
+        for name in ["x", "x.png", "x.gltf", "x.zst", ".ply"] {
             let error = check(mesh(Path::new(name)), &[], false).unwrap_err();
             assert_eq!(error.exit_code(), 2, "{name}");
         }
@@ -193,6 +200,8 @@ mod tests {
             ("x.png.gz", Kind::Picture),
             ("x.npy.zst", Kind::Visibility),
             ("x.ply", Kind::Diagram),
+            ("x.html.gz", Kind::Page),
+            ("-", Kind::Page),
             ("x.npy.gz", Kind::Diagram),
             ("-", Kind::Mesh),
         ];

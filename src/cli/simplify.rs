@@ -14,7 +14,7 @@ use super::collapsing::CollapseFlags;
 use super::console::Console;
 use super::estimate::{Task, cameras_drawing};
 use super::failure::Failure;
-use super::flags::{FormatName, InputFlags, LookingFlags, OccluderFlags};
+use super::flags::{InputFlags, LookingFlags, OccluderFlags, OutputFormatName, PageFlags};
 use super::in_force;
 use super::outputs::{self, Kind, Planned, is_pipe};
 use super::presets;
@@ -28,12 +28,12 @@ use super::watch::{Found, Watch};
 pub struct Flags {
     #[command(flatten)]
     input: InputFlags,
-    /// Result: .ply, .obj, .stl or .off, also with .zst or .gz; - is standard output
+    /// Result: .ply, .obj, .stl, .off or .glb, also with .zst or .gz; - is standard output
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Format of the output, where its name does not say it
     #[arg(long, value_name = "FORMAT")]
-    output_format: Option<FormatName>,
+    output_format: Option<OutputFormatName>,
     /// Stop at this many triangles
     #[arg(short, long, value_name = "N", value_parser = values::triangles, allow_negative_numbers = true, group = "size")]
     triangles: Option<usize>,
@@ -47,6 +47,8 @@ pub struct Flags {
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = values::level_size, group = "size")]
     #[arg(conflicts_with_all = ["triangles", "ratio"])]
     lods: Vec<LevelSize>,
+    #[command(flatten)]
+    page: PageFlags,
     #[command(flatten)]
     collapse: CollapseFlags,
     #[command(flatten)]
@@ -66,6 +68,7 @@ struct Object<'a> {
     #[serde(flatten)]
     found: Found,
     occluders: &'a [PathBuf],
+    page: Option<&'a PathBuf>,
     options: Value,
 }
 
@@ -84,6 +87,7 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
         peak_mb: peak_mib(),
         found: watch.found(),
         occluders: &request.occluders,
+        page: request.page.as_ref().map(|page| &page.output),
         options: in_force::simplify(&request),
     };
     let to_stdout = !request.levels.iter().any(|level| is_pipe(&level.output));
@@ -106,6 +110,7 @@ fn request(flags: &Flags, console: &Console) -> outsight::Result<SimplifyRequest
         levels: levels(flags)?,
         format: flags.output_format.map(Into::into),
         cache: flags.cache.place()?,
+        page: flags.page.request(),
         force: console.global.force,
     })
 }
@@ -139,6 +144,9 @@ fn check_outputs(request: &SimplifyRequest, json: bool) -> outsight::Result<()> 
             return Err(Error::Option { name: "--output", message });
         }
         outputs::check(Planned { path, kind: Kind::Mesh, format: request.format }, &inputs, request.force)?;
+    }
+    if let Some(page) = &request.page {
+        outputs::check(Planned { path: &page.output, kind: Kind::Page, format: None }, &inputs, request.force)?;
     }
     Ok(())
 }

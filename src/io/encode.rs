@@ -1,4 +1,4 @@
-//! Meshes written: binary PLY and STL, text OBJ and OFF.
+//! Meshes written: binary PLY, STL and GLB, text OBJ and OFF.
 
 use std::fmt;
 use std::io::{self, Write};
@@ -8,6 +8,7 @@ use glam::DVec3;
 
 use super::atomic::write_atomic;
 use super::format::{Compression, FileName, Format};
+use super::glb::Glb;
 use crate::error::{Error, Result};
 use crate::geom;
 use crate::mesh::{TriMesh, TriangleId};
@@ -26,7 +27,7 @@ pub struct WriteOptions {
 pub struct Attributes<'a> {
     /// Visibility per triangle (PLY property `visibility`, 32-bit).
     pub visibility: Option<&'a [f64]>,
-    /// Colour per triangle (PLY properties `red`, `green`, `blue`).
+    /// Colour per triangle, sRGB (PLY properties `red`, `green`, `blue`; GLB `COLOR_0`).
     pub colours: Option<&'a [[u8; 3]]>,
     /// Visibility per vertex (PLY property `quality`, 32-bit, the name under which MeshLab shows it).
     pub vertex_quality: Option<&'a [f64]>,
@@ -43,7 +44,7 @@ impl Attributes<'_> {
         for (what, got, expected) in given {
             match got {
                 Some(got) if got != expected => return Err(Error::ShapeMismatch { what, got, expected }),
-                Some(_) if format != Format::Ply => {
+                Some(_) if format != Format::Ply && (format, what) != (Format::Glb, "colours") => {
                     let message = format!("{} files carry no {what}; write .ply", format.extension().to_uppercase());
                     return Err(Error::Option { name: "--output", message });
                 }
@@ -58,7 +59,7 @@ impl Attributes<'_> {
 ///
 /// PLY is binary little-endian with 32-bit coordinates where they hold every one exactly, else 64-bit. OBJ and OFF are
 /// text whose numbers read back as the same. STL is binary: it has no vertices in common and rounds coordinates to
-/// 32 bits.
+/// 32 bits. GLB has 32-bit coordinates around a centre, see [`Glb`].
 ///
 /// # Errors
 /// [`Error::Write`], [`Error::ClosedPipe`]; [`Error::Option`] where the path names no format, or the format cannot
@@ -67,15 +68,17 @@ impl Attributes<'_> {
 pub fn write(path: &Path, mesh: &TriMesh, attributes: &Attributes, options: &WriteOptions) -> Result<()> {
     let format = format_to_write(path, options.format)?;
     attributes.check(mesh, format)?;
-    if format == Format::Stl {
-        check_fits_f32(path, mesh)?;
+    let force = options.force;
+    match format {
+        Format::Ply => write_encoded(path, force, |output| write_ply(output, mesh, attributes)),
+        Format::Obj => write_encoded(path, force, |output| write_obj(output, mesh)),
+        Format::Off => write_encoded(path, force, |output| write_off(output, mesh)),
+        Format::Stl => {
+            check_fits_f32(path, mesh)?;
+            write_encoded(path, force, |output| write_stl(output, mesh))
+        }
+        Format::Glb => write_glb(path, &Glb::of(mesh, attributes.colours)?, force),
     }
-    write_encoded(path, options.force, |output| match format {
-        Format::Ply => write_ply(output, mesh, attributes),
-        Format::Obj => write_obj(output, mesh),
-        Format::Stl => write_stl(output, mesh),
-        Format::Off => write_off(output, mesh),
-    })
 }
 
 /// The format that `path` is written in.
@@ -89,7 +92,7 @@ fn format_to_write(path: &Path, asked: Option<Format>) -> Result<Format> {
         (Some(format), _) | (None, Some(format)) => Ok(format),
         (None, None) => Err(Error::Option {
             name: "--output",
-            message: format!("{} names no mesh format; write to .ply, .obj, .stl or .off", name.shown),
+            message: format!("{} names no mesh format; write to .ply, .obj, .stl, .off or .glb", name.shown),
         }),
     }
 }
@@ -197,6 +200,14 @@ fn write_off(output: &mut dyn Write, mesh: &TriMesh) -> io::Result<()> {
     Ok(())
 }
 
+fn write_glb(path: &Path, glb: &Glb, force: bool) -> Result<()> {
+    if glb.fits() {
+        return write_encoded(path, force, |output| glb.write(output));
+    }
+    let message = "the mesh is too large or too small for the 32-bit numbers of GLB; write .ply".to_owned();
+    Err(Error::Write { path: path.to_owned(), message })
+}
+
 fn write_stl(output: &mut dyn Write, mesh: &TriMesh) -> io::Result<()> {
     // The text must not begin with `solid`, which some readers take for ASCII.
     let mut header = [b' '; 80];
@@ -215,7 +226,7 @@ fn write_stl(output: &mut dyn Write, mesh: &TriMesh) -> io::Result<()> {
 }
 
 /// Below this the digits of 32-bit numbers run out.
-const SMALLEST_IN_F32: f64 = 1e-30;
+pub(super) const SMALLEST_IN_F32: f64 = 1e-30;
 
 fn check_fits_f32(path: &Path, mesh: &TriMesh) -> Result<()> {
     let largest = mesh.positions().iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);

@@ -16,11 +16,13 @@ pub enum Format {
     Stl,
     /// Object file format.
     Off,
+    /// Binary glTF 2.0; written only.
+    Glb,
 }
 
 impl Format {
     /// All formats.
-    pub const ALL: [Self; 4] = [Self::Ply, Self::Obj, Self::Stl, Self::Off];
+    pub const ALL: [Self; 5] = [Self::Ply, Self::Obj, Self::Stl, Self::Off, Self::Glb];
 
     /// Its file extension in lower case, without the dot.
     #[must_use]
@@ -30,6 +32,7 @@ impl Format {
             Self::Obj => "obj",
             Self::Stl => "stl",
             Self::Off => "off",
+            Self::Glb => "glb",
         }
     }
 
@@ -138,6 +141,8 @@ pub(super) fn looks_like(bytes: &[u8]) -> Option<Format> {
     let start = text::skip_blank(bytes);
     if bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r") {
         Some(Format::Ply)
+    } else if bytes.starts_with(b"glTF") {
+        Some(Format::Glb)
     } else if stl::is_binary(bytes) || starts_with_word(start, b"solid") {
         Some(Format::Stl)
     } else {

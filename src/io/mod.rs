@@ -1,4 +1,4 @@
-//! Mesh files, in and out: PLY, OBJ, STL, OFF, each also compressed (`.zst`, `.gz`) or through a pipe (`-`).
+//! Mesh files, in and out: PLY, OBJ, STL, OFF, and GLB out, each also compressed (`.zst`, `.gz`) or through a pipe (`-`).
 //!
 //! One file a format. Every reader is a function of bytes, [`parse`], apart from the file that they came from; it
 //! ends in triangles and polygons, which become a mesh in one place. All readers are our own: they name the line or byte of what
@@ -13,6 +13,7 @@ mod cameras;
 mod encode;
 mod fault;
 mod format;
+mod glb;
 mod obj;
 mod off;
 mod ply;
@@ -30,6 +31,7 @@ pub use atomic::{check_target, write_atomic, write_atomic_in_directory};
 pub use cameras::read_cameras;
 pub use encode::{Attributes, WriteOptions, write};
 pub use format::Format;
+pub use glb::Glb;
 pub use table::{write_npy_f32, write_npy_f64, write_visibility_csv};
 pub use vdg::{Diagram, read_vdg, write_diagram_npy, write_vdg};
 
@@ -159,6 +161,9 @@ fn parse_named(bytes: &[u8], name: &FileName, options: &ReadOptions) -> Result<L
         Format::Obj => obj::parse(bytes),
         Format::Stl => stl::parse(bytes),
         Format::Off => off::parse(bytes),
+        Format::Glb => {
+            Err(Fault::new("Outsight writes GLB and does not read it; export the model as .ply, .obj, .stl or .off"))
+        }
     }
     .map_err(|fault| fault.named(&name.shown))?;
     check_memory(bytes.len(), &soup, name, options.memory_limit)?;

@@ -9,7 +9,8 @@ use crate::eval::{Comparison, GreyError, Reference, TriangleQuality};
 use crate::io::{self, ReadOptions};
 use crate::mesh::TriMesh;
 use crate::pipeline::Observer;
-use crate::pipeline::observation::Observation;
+use crate::pipeline::observation::{Observation, Surrounded};
+use crate::pipeline::page::{Column, Exhibit, PageRequest, Show, shown_name};
 use crate::pipeline::side_by_side::{ColumnOrder, Portrait, SideBySide};
 use crate::pipeline::surroundings::Surroundings;
 use crate::report::picture::Picture;
@@ -28,10 +29,10 @@ pub struct CompareRequest {
     pub samples: Option<u64>,
     /// Seed of the samples.
     pub seed: u64,
-    /// How the reference's visibility is measured, which tells the error of visible surface from that of hidden surface;
-    /// `None` does not look.
-    pub measure: Option<MeasureOptions>,
-    /// Meshes in the same coordinates that hide the reference while it is looked at.
+    /// How visibility is measured: the reference's, which tells the error of visible surface from that of hidden surface,
+    /// and for the page every mesh's.
+    pub measure: MeasureOptions,
+    /// Meshes in the same coordinates that hide what is looked at.
     pub occluders: Vec<PathBuf>,
     /// Where measurements are kept from run to run: a directory, or one file that ends in `.seen`.
     pub cache: Option<PathBuf>,
@@ -39,7 +40,9 @@ pub struct CompareRequest {
     pub sheet: Option<PathBuf>,
     /// Upward in the sheet's pictures, any length but 0.
     pub up: [f64; 3],
-    /// Replace a sheet that is there.
+    /// A page that shows the meshes and what differs.
+    pub page: Option<PageRequest>,
+    /// Replace outputs that are there.
     pub force: bool,
 }
 
@@ -50,8 +53,8 @@ pub struct CompareReport {
     pub tests: Vec<TestReport>,
     /// Diagonal of the reference's box, model units.
     pub diagonal: f64,
-    /// V of the reference; `None` where nobody looked.
-    pub reference_visibility: Option<f64>,
+    /// V of the reference.
+    pub reference_visibility: f64,
     /// Whether the look was kept by an earlier run, `hit` or `miss`; `None` without a cache.
     pub cache: Option<&'static str>,
 }
@@ -133,9 +136,9 @@ pub fn compare_files(request: &CompareRequest, observer: &dyn Observer) -> Resul
     };
     let mesh = read(&request.reference)?.mesh;
     let tests: Vec<Test> = request.tests.iter().map(read).collect::<Result<_>>()?;
-    let (visibility, cache) = look(&mesh, request, observer)?;
-    let visibility_per_triangle = visibility.as_ref().map(Visibility::per_triangle);
-    let reference = Reference::new(&mesh, visibility_per_triangle, options, observer)?;
+    let occluders = Surroundings::read(&request.occluders, &request.read)?;
+    let (visibility, cache) = look(occluders.around(&mesh)?, request, observer)?;
+    let reference = Reference::new(&mesh, Some(visibility.per_triangle()), options, observer)?;
     let comparisons: Vec<Comparison> =
         tests.iter().map(|test| reference.compare(&test.mesh, observer)).collect::<Result<_>>()?;
     drop(reference);
@@ -143,28 +146,51 @@ pub fn compare_files(request: &CompareRequest, observer: &dyn Observer) -> Resul
         let drawn = contact_sheet(&mesh, &tests, &comparisons, request)?;
         io::write_atomic(sheet, request.force, |writer| drawn.write_png(writer))?;
     }
-    let diagonal = mesh.bounds().diagonal();
     let results = request.tests.iter().zip(&tests).zip(&comparisons);
-    Ok(CompareReport {
+    let report = CompareReport {
         tests: results.map(|((file, test), comparison)| TestReport::new(file, test, comparison)).collect(),
-        diagonal,
-        reference_visibility: visibility.map(|v| v.of_mesh()),
+        diagonal: mesh.bounds().diagonal(),
+        reference_visibility: visibility.of_mesh(),
         cache,
-    })
+    };
+    if let Some(page) = &request.page {
+        let show = Show {
+            deed: "compared",
+            original: Exhibit { name: shown_name(&request.reference), mesh: &mesh, visibility },
+            results: exhibits(request, &tests, &occluders, observer)?,
+            errors: comparisons.iter().map(|comparison| comparison.image).collect(),
+            columns: distances(&report.tests),
+            measure: &request.measure,
+            notes: vec![DISTANCES.to_owned()],
+        };
+        show.write(page, request.force, observer)?;
+    }
+    Ok(report)
 }
 
-/// V of the reference, where it is asked for, and what of it a cache had.
+/// The tests as the page shows them, each looked at among the same occluders.
+fn exhibits<'a>(
+    request: &CompareRequest,
+    tests: &'a [Test],
+    occluders: &'a Surroundings,
+    observer: &dyn Observer,
+) -> Result<Vec<Exhibit<'a>>> {
+    let look = |(path, test): (&PathBuf, &'a Test)| {
+        Exhibit::look(shown_name(path), occluders.around(&test.mesh)?, &request.measure, observer)
+    };
+    request.tests.iter().zip(tests).map(look).collect()
+}
+
+/// V of the reference, and what of it a cache had.
 fn look(
-    mesh: &TriMesh,
+    scene: Surrounded<'_>,
     request: &CompareRequest,
     observer: &dyn Observer,
-) -> Result<(Option<Visibility>, Option<&'static str>)> {
-    let Some(options) = &request.measure else { return Ok((None, None)) };
-    let occluders = Surroundings::read(&request.occluders, &request.read)?;
-    let mut observation = Observation::of(occluders.around(mesh)?, options, request.cache.as_deref(), observer)?;
+) -> Result<(Visibility, Option<&'static str>)> {
+    let mut observation = Observation::of(scene, &request.measure, request.cache.as_deref(), observer)?;
     let visibility = observation.visibility(observer)?;
     observation.keep(&visibility, None)?;
-    Ok((Some(visibility), observation.reused()))
+    Ok((visibility, observation.reused()))
 }
 
 impl TestReport {
@@ -204,6 +230,19 @@ impl GeometricReport {
             weighted_rms: seen.and_then(|seen| seen.weighted_rms),
         }
     }
+}
+
+/// What the page says below its table.
+const DISTANCES: &str =
+    "Distances between the surfaces are in % of the diagonal of the first mesh, hidden surface included.";
+
+/// The page's columns of distances.
+fn distances(tests: &[TestReport]) -> Vec<Column> {
+    let column = |head, of: fn(&GeometricReport) -> f64| {
+        let cells = tests.iter().map(|test| format!("{:.4} %", of(&test.geometric))).collect();
+        Column { head, cells }
+    };
+    vec![column("Mean distance", |g| g.mean), column("RMS distance", |g| g.rms), column("Largest", |g| g.max)]
 }
 
 /// Pictures of the reference and of every test, with what differs in red.

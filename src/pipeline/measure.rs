@@ -3,9 +3,10 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::error::Result;
-use crate::io::{self, Attributes, Loaded, ReadOptions, WriteOptions};
+use crate::io::{self, Attributes, Format, Loaded, ReadOptions, WriteOptions};
 use crate::pipeline::diagram::Record;
 use crate::pipeline::observation::Observation;
+use crate::pipeline::page::{Exhibit, PageRequest, Show, shown_name};
 use crate::pipeline::surroundings::Surroundings;
 use crate::pipeline::{Clock, DiagramRequest, Observer};
 use crate::report::colour::ColourMap;
@@ -22,16 +23,18 @@ pub struct MeasureRequest {
     pub measure: MeasureOptions,
     /// Meshes in the same coordinates that hide and are not measured.
     pub occluders: Vec<PathBuf>,
-    /// A mesh file (PLY carries visibility and heat colours), `.npy` or `.csv` to write.
+    /// A mesh file (PLY carries visibility and heat colours, GLB the colours), `.npy` or `.csv` to write.
     pub output: Option<PathBuf>,
     /// Which camera sees which triangle, to be written too.
     pub diagram: Option<DiagramRequest>,
-    /// Heat colours in a PLY output.
+    /// Heat colours in a PLY or GLB output.
     pub colour_map: ColourMap,
     /// Where measurements are kept from run to run: a directory, or one file that ends in `.seen`. A run that writes a
     /// diagram leaves it alone.
     pub cache: Option<PathBuf>,
-    /// Replace an output that is there.
+    /// A page that shows what was measured.
+    pub page: Option<PageRequest>,
+    /// Replace outputs that are there.
     pub force: bool,
 }
 
@@ -155,6 +158,14 @@ pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result
     if let (Some(record), Some(diagram)) = (record, &request.diagram) {
         record.write(&loaded, observation.subject()?, &diagram.output, request.force)?;
     }
+    if let Some(page) = &request.page {
+        let name = shown_name(&request.input);
+        show(Exhibit { name, mesh: &loaded.mesh, visibility: visibility.clone() }, request).write(
+            page,
+            request.force,
+            observer,
+        )?;
+    }
     Ok(MeasureReport {
         triangles: loaded.mesh.triangle_count(),
         cameras: Some(visibility.cameras()).filter(|&n| n > 0),
@@ -175,6 +186,29 @@ pub fn measure_file(request: &MeasureRequest, observer: &dyn Observer) -> Result
         rays: visibility.details().rays,
         standard_error: visibility.details().standard_error.as_ref().map(ErrorSummary::from),
     })
+}
+
+/// What a page shows of a measurement.
+fn show<'a>(original: Exhibit<'a>, request: &'a MeasureRequest) -> Show<'a> {
+    Show {
+        deed: "measured",
+        original,
+        results: Vec::new(),
+        errors: Vec::new(),
+        columns: Vec::new(),
+        measure: &request.measure,
+        notes: hiding_too(&request.occluders),
+    }
+}
+
+/// A sentence about occluders, where there are any.
+pub(super) fn hiding_too(occluders: &[PathBuf]) -> Vec<String> {
+    let names: Vec<String> = occluders.iter().map(|path| shown_name(path)).collect();
+    if names.is_empty() {
+        Vec::new()
+    } else {
+        vec![format!("Hidden also by {}, which is not shown.", names.join(", "))]
+    }
 }
 
 fn look(
@@ -204,8 +238,11 @@ fn write(path: &Path, loaded: &Loaded, visibility: &Visibility, request: &Measur
         _ => {
             let colours: Vec<[u8; 3]> = values.iter().map(|&v| request.colour_map.colour(v)).collect();
             let quality = per_vertex(&loaded.mesh, values);
-            let attributes =
-                Attributes { visibility: Some(values), colours: Some(&colours), vertex_quality: Some(&quality) };
+            let colours = Some(&colours[..]);
+            let attributes = match Format::of_path(path) {
+                Some(Format::Glb) => Attributes { colours, ..Attributes::default() },
+                _ => Attributes { visibility: Some(values), colours, vertex_quality: Some(&quality) },
+            };
             io::write(path, &loaded.mesh, &attributes, &WriteOptions { force: request.force, format: None })
         }
     }

@@ -81,18 +81,23 @@ fn flat(mesh: &TriMesh, shot: &Shot) -> Result<Picture> {
     Picture::from_grey(shot.width, shot.width, &image.pixels)
 }
 
-/// Heat colours, darkened by half where the surface turns away, so that its shape shows.
 fn heat(mesh: &TriMesh, shot: &Shot, request: &RenderRequest, observer: &dyn Observer) -> Result<Picture> {
     let scene = Surrounded { mesh, occluders: &[] };
     let mut observation = Observation::of(scene, &request.measure, request.cache.as_deref(), observer)?;
     let visibility = observation.visibility(observer)?;
     observation.keep(&visibility, None)?;
-    let picture = Gallery::new(mesh, mesh).coloured(shot, |hit, brightness| {
-        let colour = request.colour_map.colour(visibility.per_triangle()[hit.triangle.0 as usize]);
+    let values = visibility.per_triangle();
+    let picture = heat_picture(&Gallery::new(mesh, mesh), shot, values, request.colour_map)?;
+    Ok(if request.legend { with_legend(&picture, request.colour_map, "visibility V") } else { picture })
+}
+
+/// Heat colours of `values`, one per triangle, darkened by half where the surface turns away, so that its shape shows.
+pub(super) fn heat_picture(gallery: &Gallery, shot: &Shot, values: &[f64], map: ColourMap) -> Result<Picture> {
+    let picture = gallery.coloured(shot, |hit, brightness| {
+        let colour = map.colour(values[hit.triangle.0 as usize]);
         colour.map(|channel| f64::from(channel) * (0.5 + 0.5 * brightness))
     })?;
-    let picture = Picture::from_rgb(shot.width, shot.width, picture)?;
-    Ok(if request.legend { with_legend(&picture, request.colour_map, "visibility V") } else { picture })
+    Picture::from_rgb(shot.width, shot.width, picture)
 }
 
 fn direction(name: &'static str, [x, y, z]: [f64; 3]) -> Result<DVec3> {

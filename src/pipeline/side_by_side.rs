@@ -86,13 +86,13 @@ impl Portrait<'_> {
 }
 
 /// The pictures of one mesh: over white to be looked at, over black, as the image error sees them, to be compared.
-struct Pictures {
-    white: Vec<GreyImage>,
-    black: Vec<GreyImage>,
+pub(super) struct Pictures {
+    pub white: Vec<GreyImage>,
+    pub black: Vec<GreyImage>,
 }
 
 impl Pictures {
-    fn of(mesh: &TriMesh, reference: &TriMesh, shots: &[Shot]) -> Result<Self> {
+    pub fn of(mesh: &TriMesh, reference: &TriMesh, shots: &[Shot]) -> Result<Self> {
         let gallery = Gallery::new(mesh, reference);
         let over = |background: f64| -> Result<Vec<GreyImage>> {
             shots.iter().map(|shot| gallery.picture(shot, background)).collect()

@@ -1,0 +1,109 @@
+use glam::DVec3;
+
+use crate::camera::Frame;
+use crate::error::{Error, Result};
+use crate::eval::{Gallery, Shot};
+use crate::mesh::TriangleId;
+use crate::pipeline::page::{Exhibit, MAP};
+use crate::pipeline::render::heat_picture;
+use crate::pipeline::side_by_side::Pictures;
+use crate::raster::GreyImage;
+use crate::report::colour::mix;
+use crate::report::contact_sheet::RED;
+use crate::report::histogram::Histogram;
+use crate::report::page::{FIGURES_BYTES, Figure, Figures, Image};
+use crate::report::picture::{Picture, WHITE};
+
+/// Bars of a histogram.
+const CLASSES: usize = 20;
+
+/// Histograms side by side at most.
+const HISTOGRAM_COLUMNS: usize = 3;
+
+/// Difference in grey levels that is drawn in full red, as on the contact sheet.
+const FULL_RED: f32 = 64.0;
+
+/// Pixels along the side of a picture: the first that keeps all of them within [`FIGURES_BYTES`].
+const WIDTHS: [u32; 5] = [420, 300, 210, 150, 100];
+
+/// How the surface of each mesh is spread over visibility, on one scale.
+pub(super) fn histograms(exhibits: &[&Exhibit<'_>]) -> Result<Figures> {
+    let spread: Vec<Vec<f64>> = exhibits.iter().map(|exhibit| spread(exhibit)).collect();
+    // Whole tens, so that the scale ends on a number.
+    let top = 10.0 * (spread.iter().flatten().fold(0.0_f64, |most, &p| most.max(p)) / 10.0).ceil().max(1.0);
+    let figure = |(exhibit, percents): (&&Exhibit, Vec<f64>)| {
+        let (x, y) = ("visibility".to_owned(), "share of the surface".to_owned());
+        let svg = Histogram { percents, x, y, top, map: MAP }.to_svg();
+        let svg = svg.map_err(|e| Error::Limit { message: format!("a histogram of {}: {e}", exhibit.name) })?;
+        Ok(Figure { image: Image::Svg(svg), caption: exhibit.name.clone() })
+    };
+    let figures = exhibits.iter().zip(spread).map(figure).collect::<Result<Vec<_>>>()?;
+    Ok(Figures { columns: figures.len().clamp(2, HISTOGRAM_COLUMNS), figures })
+}
+
+/// The share of the surface in each class of visibility, in %.
+fn spread(exhibit: &Exhibit<'_>) -> Vec<f64> {
+    let frame = Frame::of(exhibit.mesh);
+    let area = |t| frame.area_and_normal(exhibit.mesh, TriangleId(t)).map_or(0.0, |(area, _)| area);
+    let areas: Vec<f64> = (0..exhibit.mesh.triangle_count() as u32).map(area).collect();
+    Histogram::percents_of(exhibit.visibility.per_triangle(), &areas, CLASSES)
+}
+
+/// A row for each view: the original's heat map where it is alone, else original, and each result with what differs.
+pub(super) fn pictures(
+    original: &Exhibit<'_>,
+    results: &[Exhibit<'_>],
+    views: &[DVec3; 3],
+    up: DVec3,
+) -> Result<Figures> {
+    let mut drawn = Vec::new();
+    for width in WIDTHS {
+        let shots = views.map(|toward| Shot::fitting(original.mesh, toward, up, width));
+        drawn = if results.is_empty() { heat(original, &shots)? } else { compared(original, results, &shots)? };
+        if drawn.iter().map(|figure| figure.image.embedded_bytes()).sum::<usize>() <= FIGURES_BYTES {
+            break;
+        }
+    }
+    Ok(Figures { columns: drawn.len() / views.len().max(1), figures: drawn })
+}
+
+fn heat(exhibit: &Exhibit<'_>, shots: &[Shot; 3]) -> Result<Vec<Figure>> {
+    let gallery = Gallery::new(exhibit.mesh, exhibit.mesh);
+    let draw = |shot: &Shot| {
+        let picture = heat_picture(&gallery, shot, exhibit.visibility.per_triangle(), MAP)?;
+        figure(&picture, format!("{}, visibility", exhibit.name))
+    };
+    shots.iter().map(draw).collect()
+}
+
+fn compared(original: &Exhibit<'_>, results: &[Exhibit<'_>], shots: &[Shot; 3]) -> Result<Vec<Figure>> {
+    let reference = Pictures::of(original.mesh, original.mesh, shots)?;
+    let others: Vec<Pictures> =
+        results.iter().map(|result| Pictures::of(result.mesh, original.mesh, shots)).collect::<Result<_>>()?;
+    let mut figures = Vec::new();
+    for view in 0..shots.len() {
+        figures.push(figure(&grey(&reference.white[view])?, original.name.clone())?);
+        for (result, sheet) in results.iter().zip(&others) {
+            figures.push(figure(&grey(&sheet.white[view])?, result.name.clone())?);
+            let red = difference(&reference.black[view], &sheet.black[view])?;
+            figures.push(figure(&red, format!("{}, difference", result.name))?);
+        }
+    }
+    Ok(figures)
+}
+
+fn grey(image: &GreyImage) -> Result<Picture> {
+    Picture::from_grey(image.width as u32, image.width as u32, &image.pixels)
+}
+
+fn difference(a: &GreyImage, b: &GreyImage) -> Result<Picture> {
+    let differences: Vec<f32> = a.pixels.iter().zip(&b.pixels).map(|(a, b)| (a - b).abs()).collect();
+    let red = |level: f32| mix(WHITE, RED, f64::from((level / FULL_RED).min(1.0)));
+    Picture::from_values(a.width as u32, a.width as u32, &differences, red)
+}
+
+fn figure(picture: &Picture, caption: String) -> Result<Figure> {
+    let mut png = Vec::new();
+    picture.write_png(&mut png).map_err(|e| Error::Limit { message: format!("a picture of {caption}: {e}") })?;
+    Ok(Figure { image: Image::Png(png), caption })
+}

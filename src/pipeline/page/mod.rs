@@ -1,0 +1,224 @@
+//! The page that `--report` asks for: the same for every command, an original and what was made of it, if anything.
+
+mod figures;
+mod shown;
+
+use std::path::{Path, PathBuf};
+
+use crate::error::{Error, Result};
+use crate::eval::ImageError;
+use crate::io;
+use crate::mesh::TriMesh;
+use crate::pipeline::compare::views_around;
+use crate::pipeline::observation::Surrounded;
+use crate::progress::Progress;
+use crate::report::colour::ColourMap;
+use crate::report::page::{Content, Fact, Legend, MODELS_BYTES, Page, Section, Table, Viewer};
+use crate::report::table::thousands;
+use crate::visibility::{MeasureOptions, Subject, Visibility};
+use figures::{histograms, pictures};
+use shown::models;
+
+/// Colours of every page: brightness grows with visibility, for every eye and on grey paper.
+const MAP: ColourMap = ColourMap::Cividis;
+
+/// A page to write beside a result.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PageRequest {
+    /// The HTML file.
+    pub output: PathBuf,
+    /// Upward in its pictures and views, any length but 0.
+    pub up: [f64; 3],
+}
+
+/// A mesh that a page shows, coloured by its own visibility.
+pub(super) struct Exhibit<'a> {
+    pub name: String,
+    pub mesh: &'a TriMesh,
+    pub visibility: Visibility,
+}
+
+impl<'a> Exhibit<'a> {
+    /// Looks at a mesh among occluders.
+    pub fn look(
+        name: String,
+        scene: Surrounded<'a>,
+        options: &MeasureOptions,
+        progress: &dyn Progress,
+    ) -> Result<Self> {
+        let visibility = Subject::among(scene.mesh, scene.occluders, options.backend)?.measure(options, progress)?;
+        Ok(Self { name, mesh: scene.mesh, visibility })
+    }
+
+    /// Triangles that no camera sees, in %.
+    fn never_seen_percent(&self) -> f64 {
+        100.0 * self.visibility.never_seen() as f64 / self.mesh.triangle_count() as f64
+    }
+
+    /// Triangles, in % of the original's.
+    fn kept_percent(&self, original: &Self) -> f64 {
+        100.0 * self.mesh.triangle_count() as f64 / original.mesh.triangle_count() as f64
+    }
+}
+
+/// The name of a file without the folders before it, which are nobody else's business.
+pub(super) fn shown_name(path: &Path) -> String {
+    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+    if name == "-" { "standard input or output".to_owned() } else { name.into_owned() }
+}
+
+/// A column of the table that only one command has.
+pub(super) struct Column {
+    pub head: &'static str,
+    /// One cell for each result.
+    pub cells: Vec<String>,
+}
+
+/// What a page shows.
+pub(super) struct Show<'a> {
+    /// What was done: `simplified`.
+    pub deed: &'static str,
+    pub original: Exhibit<'a>,
+    pub results: Vec<Exhibit<'a>>,
+    /// One for each result.
+    pub errors: Vec<ImageError>,
+    pub columns: Vec<Column>,
+    pub measure: &'a MeasureOptions,
+    /// Sentences below everything.
+    pub notes: Vec<String>,
+}
+
+impl Show<'_> {
+    /// Makes the page and writes it.
+    pub fn write(&self, request: &PageRequest, force: bool, progress: &dyn Progress) -> Result<()> {
+        let html = self.page(request.up, progress)?.to_html()?;
+        progress.check()?;
+        io::write_atomic(&request.output, force, |output| output.write_all(html.as_bytes()))
+    }
+
+    fn page(&self, up: [f64; 3], progress: &dyn Progress) -> Result<Page> {
+        let direction = glam::DVec3::from_array(up).try_normalize().ok_or_else(|| Error::Option {
+            name: "--up",
+            message: "0,0,0 is no direction; give three numbers that are not all 0".to_owned(),
+        })?;
+        let mut sections = vec![section("Summary", "", Content::Summary(self.facts()))];
+        if !self.results.is_empty() {
+            let text = "Image error: root mean square difference of pictures from 20 sides, in grey levels of 255. Outline \
+                        error: pixels per picture, of 512 by 512, that only one of the two outlines covers.";
+            sections.push(section("Results", text, Content::Table(self.table())));
+        }
+        sections.push(self.viewer(direction, progress)?);
+        sections.push(section(
+            "How much of the surface is seen",
+            HISTOGRAM,
+            Content::Figures(histograms(&self.exhibits())?),
+        ));
+        let text = if self.results.is_empty() { HEAT } else { PICTURES };
+        let shots = views_around(direction);
+        let drawn = pictures(&self.original, &self.results, &shots, direction)?;
+        progress.check()?;
+        sections.push(section("Pictures", text, Content::Figures(drawn)));
+        sections.push(section("How this was made", "", Content::Notes(self.notes())));
+        let title = format!("{}, {}", self.original.name, self.deed);
+        Ok(Page { title, subtitle: SUBTITLE.to_owned(), sections })
+    }
+
+    fn exhibits(&self) -> Vec<&Exhibit<'_>> {
+        std::iter::once(&self.original).chain(&self.results).collect()
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        let seen = &self.original;
+        let fact = |name: &str, value: String, note: String| Fact { name: name.to_owned(), value, note };
+        let never = thousands(seen.visibility.never_seen() as u64);
+        let mut facts = vec![
+            fact("Triangles", thousands(seen.mesh.triangle_count() as u64), "of the original".to_owned()),
+            fact(
+                "Visibility",
+                format!("{:.3}", seen.visibility.of_mesh()),
+                "a ball has 1, a sealed inside 0".to_owned(),
+            ),
+            fact("Never seen", format!("{:.1} %", seen.never_seen_percent()), format!("{never} triangles")),
+        ];
+        if self.results.is_empty() {
+            facts.push(fact("Cameras", thousands(seen.visibility.cameras() as u64), "all around".to_owned()));
+        }
+        for (result, error) in self.results.iter().zip(&self.errors).take(3) {
+            let kept = thousands(result.mesh.triangle_count() as u64);
+            let note = format!("grey levels, {}: {kept} triangles ({:.1} %)", result.name, result.kept_percent(seen));
+            facts.push(fact("Image error", format!("{:.2}", error.image_rmse), note));
+        }
+        facts
+    }
+
+    fn table(&self) -> Table {
+        let heads = ["Mesh", "Triangles", "Kept", "Visibility", "Never seen", "Image error", "Outline error"];
+        let heads = heads.into_iter().chain(self.columns.iter().map(|column| column.head)).map(str::to_owned).collect();
+        let row = |exhibit: &Exhibit, error: Option<&ImageError>| {
+            let (image, outline) = error.map_or((0.0, 0.0), |e| (e.image_rmse, e.silhouette_xor));
+            vec![
+                exhibit.name.clone(),
+                thousands(exhibit.mesh.triangle_count() as u64),
+                format!("{:.1} %", exhibit.kept_percent(&self.original)),
+                format!("{:.3}", exhibit.visibility.of_mesh()),
+                format!("{:.1} %", exhibit.never_seen_percent()),
+                format!("{image:.2}"),
+                format!("{outline:.1}"),
+            ]
+        };
+        let mut rows = vec![row(&self.original, None)];
+        rows[0].extend(self.columns.iter().map(|_| "–".to_owned()));
+        for (number, (result, error)) in self.results.iter().zip(&self.errors).enumerate() {
+            let mut cells = row(result, Some(error));
+            cells.extend(self.columns.iter().map(|column| column.cells[number].clone()));
+            rows.push(cells);
+        }
+        Table { heads, rows }
+    }
+
+    fn viewer(&self, up: glam::DVec3, progress: &dyn Progress) -> Result<Section> {
+        let models = models(&self.exhibits(), MODELS_BYTES, progress)?;
+        let legend = Legend {
+            title: "Visibility V".to_owned(),
+            map: MAP,
+            low: "no camera sees it".to_owned(),
+            high: "all of it sees open sky".to_owned(),
+        };
+        let [toward, ..] = views_around(up).map(|d| d.to_array());
+        let viewer = Viewer { models, legend: Some(legend), toward, up: up.to_array() };
+        Ok(section("In three dimensions", VIEWER, Content::Viewer(viewer)))
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let seen = &self.original.visibility;
+        let (backend, estimator) = (self.measure.backend.name(), self.measure.estimator.name());
+        let looked = match seen.cameras() {
+            0 => "rays in all directions".to_owned(),
+            n => format!("{} cameras", thousands(n as u64)),
+        };
+        let pixels =
+            if seen.resolution() > 0 { format!(" of {0} × {0} pixels", seen.resolution()) } else { String::new() };
+        let mut notes = vec![
+            format!(
+                "Visibility: estimator {estimator} on backend {backend}, {looked}{pixels}. Every mesh is looked at by itself."
+            ),
+            "Visibility of a mesh is the mean over its surface, fronts of triangles only (Zhang & Turk 2002, eq. 3.2)."
+                .to_owned(),
+        ];
+        notes.extend(self.notes.iter().cloned());
+        notes
+    }
+}
+
+const SUBTITLE: &str = "Visibility is the share of directions from which a piece of surface is seen from outside, each counted \
+    by its cosine: 1 on a ball, 0 in a sealed inside.";
+const VIEWER: &str = "Each triangle has the colour of its visibility, darker where it turns away from you. Look inside: what is \
+    dark blue costs triangles that nobody sees.";
+const HISTOGRAM: &str = "Share of the surface by its visibility. The first bar is what is hidden, or nearly.";
+const HEAT: &str = "The same colours from three sides.";
+const PICTURES: &str = "Each result beside what differs from the original: white where the pictures are equal, full red from 64 \
+    grey levels of 255.";
+
+fn section(heading: &str, text: &str, content: Content) -> Section {
+    Section { heading: heading.to_owned(), text: text.to_owned(), content }
+}
