@@ -95,7 +95,7 @@ impl Edges {
     pub fn spans(&self, block: &Block, mut take: impl FnMut(i32, i32, i32)) {
         let last = block.columns.1 - block.columns.0;
         let end = block.rows.1 - block.rows.0 + 1;
-        let [lowest, middle, highest] = self.from_low_to_high();
+        let [lowest, middle, highest] = self.corners_by_height();
         let edge_between = |p: usize, q: usize| if (p + 1) % 3 == q { p } else { q };
         let long = edge_between(lowest, highest);
         let height = self.heights[middle];
@@ -116,7 +116,7 @@ impl Edges {
     }
 
     /// The corners, by height.
-    fn from_low_to_high(&self) -> [usize; 3] {
+    fn corners_by_height(&self) -> [usize; 3] {
         let mut corners = [0, 1, 2];
         corners.sort_unstable_by_key(|&i| self.heights[i]);
         corners
@@ -224,7 +224,7 @@ mod tests {
     /// The rows between the corners, within those of the window.
     fn rows_of(corners: &[ScreenVertex; 3], bits: u32, last: i32) -> (i32, i32) {
         let [a, b, c] = corners.map(|corner| corner.row);
-        ((a.min(b).min(c) + (1 << bits) - 1 >> bits).max(0), (a.max(b).max(c) >> bits).min(last))
+        (((a.min(b).min(c) + (1 << bits) - 1) >> bits).max(0), (a.max(b).max(c) >> bits).min(last))
     }
 
     /// Corners on a grid of quarter pixels, so that many edges are level, upright or pass through pixel centres.
