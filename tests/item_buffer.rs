@@ -115,6 +115,32 @@ fn thin_walls_leak_less_the_thicker_they_are() {
     assert_eq!(none, [0.0; 6], "a pixel shows what is in front");
 }
 
+#[cfg(feature = "embree")]
+#[test]
+fn rays_find_the_leaks_of_thin_walls_and_none_on_a_convex_solid() {
+    let leaks = |mesh: &TriMesh, rescue, sides| {
+        let options = MeasureOptions { rescue, sides, resolution: Some(160), ..MeasureOptions::paper() };
+        look(mesh, &options).details().rescue.unwrap().leaks.unwrap()
+    };
+    let ball = leaks(&shapes::icosphere(5), DepthRescue::Plain, Sides::One);
+    assert_eq!((ball.sampled, ball.leaking), (4096, 0));
+    // Backs of a closed solid are hidden: whoever rescues them is wrong every time.
+    let backs = leaks(&shapes::icosphere(5), DepthRescue::Plain, Sides::Better);
+    assert!(backs.leaking > 100, "{backs:?}");
+    // A quarter of a pixel hides nothing from rescue: every piece of the inner box leaks, few of the outer lack a pixel.
+    let thin = leaks(&boxed_box(0.25, 160).mesh, DepthRescue::Plain, Sides::One);
+    assert!(thin.rate().unwrap() > 0.5, "{thin:?}");
+    let none = leaks(&boxed_box(0.25, 160).mesh, DepthRescue::None, Sides::One);
+    assert_eq!((none.sampled, none.rate()), (0, None));
+}
+
+#[cfg(not(feature = "embree"))]
+#[test]
+fn without_rays_nobody_claims_to_know_how_much_leaks() {
+    let options = MeasureOptions { resolution: Some(160), ..MeasureOptions::paper() };
+    assert_eq!(look(&shapes::icosphere(5), &options).details().rescue.unwrap().leaks, None);
+}
+
 /// Without rescue, triangles smaller than pixels are lost; with it, V(M) is back at the truth.
 ///
 /// A visible triangle of area A, far smaller than a pixel of area s², has a pixel with probability A cos / s²; the mean of

@@ -235,6 +235,7 @@ fn seeds_change_what_is_random_and_nothing_else() {
 fn hidden_triangles_are_looked_for_with_pictures() {
     let sealed = shapes::cluttered_sealed_box(1, 1, 2);
     let options = MeasureOptions { resolution: Some(64), ..surface(1) };
+    assert_eq!(Hidden::Delete.backend(), Some(BackendKind::Raster));
     let hidden = look(&sealed.mesh, &options, Hidden::Delete, &Silent).unwrap().hidden;
     assert!(sealed.triangles("clutter").all(|t| hidden[t]) && sealed.triangles("outside").all(|t| !hidden[t]));
 }

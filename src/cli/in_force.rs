@@ -1,9 +1,10 @@
 //! The options that were in force, as JSON: each under the name and value of its flag.
 
+use outsight::backend::BackendKind;
 use outsight::camera::{CameraPattern, CameraSphere, CameraWeights};
-use outsight::pipeline::SimplifyRequest;
+use outsight::pipeline::{Metric, SimplifyRequest};
 use outsight::simplify::{Boundary, PlaneWeight, Topology};
-use outsight::visibility::{Estimator, MeasureOptions};
+use outsight::visibility::{Estimator, Hidden, MeasureOptions};
 use serde_json::{Value, json};
 
 /// Options of measuring. A resolution of `null` was chosen by the number of triangles.
@@ -62,9 +63,11 @@ pub fn compare(surface_samples: Option<u64>, options: &MeasureOptions) -> Value 
 /// Options of simplifying, and of measuring under `measure`.
 pub fn simplify(request: &SimplifyRequest) -> Value {
     let options = &request.simplify;
+    let looks_again = (request.metric == Metric::Visibility).then_some(request.hidden);
     json!({
         "metric": request.metric.name(),
         "hidden": request.hidden.name(),
+        "hidden_backend": looks_again.and_then(Hidden::backend).map(BackendKind::name),
         "visibility_power": request.visibility_power,
         "max_error": options.max_error,
         "weights_by": match options.plane_weight {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use outsight::Error;
-use outsight::pipeline::{DiagramRequest, ErrorSummary, MeasureReport, MeasureRequest, measure_file};
+use outsight::pipeline::{DiagramRequest, ErrorSummary, MeasureReport, MeasureRequest, RescueSummary, measure_file};
 use outsight::report::table::thousands;
 use serde::Serialize;
 use serde_json::Value;
@@ -149,6 +149,7 @@ fn text(report: &MeasureReport, request: &MeasureRequest) -> String {
     if let (Some(rescue), Some(pieces)) = (report.rescue, report.subdivided) {
         let rescued = format!("{:.1} % of what is seen has no pixel of its own", 100.0 * rescue.rate);
         rows.insert(4, ("cut into", format!("{} pieces; {rescued}", count(pieces))));
+        rows.insert(5, ("rescue leaks", leaks(&rescue)));
     }
     if seen.mesh_sides != seen.mesh {
         rows.insert(1, ("with backs", format!("{:.4}  (--sides {})", seen.mesh_sides, report.sides)));
@@ -169,6 +170,16 @@ fn text(report: &MeasureReport, request: &MeasureRequest) -> String {
         rows.push(("page", page.output.display().to_string()));
     }
     pairs(&rows)
+}
+
+fn leaks(rescue: &RescueSummary) -> String {
+    match (rescue.leak_rate, rescue.leak_unmeasured) {
+        (Some(rate), _) => {
+            let sampled = thousands(rescue.leak_sampled);
+            format!("{:.1} % of {sampled} of these pairs, asked by rays, are hidden after all", 100.0 * rate)
+        }
+        (None, reason) => format!("not measured: {}", reason.unwrap_or_default()),
+    }
 }
 
 fn looked_with(report: &MeasureReport) -> String {

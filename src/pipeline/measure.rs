@@ -101,11 +101,28 @@ pub struct RescueSummary {
     pub rescued: u64,
     /// The share of the rescued among all that count as seen.
     pub rate: f64,
+    /// The rescued that were asked again by rays.
+    pub leak_sampled: u64,
+    /// The share of these that are hidden after all.
+    pub leak_rate: Option<f64>,
+    /// Why there is no such share.
+    pub leak_unmeasured: Option<&'static str>,
 }
 
 impl From<Rescue> for RescueSummary {
     fn from(rescue: Rescue) -> Self {
-        Self { without_pixel: rescue.without_pixel, rescued: rescue.rescued, rate: rescue.rate() }
+        Self {
+            without_pixel: rescue.without_pixel,
+            rescued: rescue.rescued,
+            rate: rescue.rate(),
+            leak_sampled: rescue.leaks.map_or(0, |leaks| leaks.sampled),
+            leak_rate: rescue.leaks.and_then(|leaks| leaks.rate()),
+            leak_unmeasured: match rescue.leaks {
+                None => Some("it takes rays, and Embree is not there"),
+                Some(leaks) if leaks.sampled == 0 => Some("nothing was rescued"),
+                Some(_) => None,
+            },
+        }
     }
 }
 

@@ -125,15 +125,14 @@ fn fill_large(triangle: Triangle, corners: [&ScreenVertex; 3], block: &Block, bi
     let hit = tag(seen(triangle, edges.doubled_area > 0));
     let plane = DepthPlane::new(corners, edges.doubled_area, bits);
     let first = block.columns.0;
-    for (row, span) in (block.rows.0..).zip(edges.spans(block)) {
-        if let Some((from, to)) = span {
-            let depth = plane.along_row(row);
-            let pixels = &mut buffers.row_mut(row as usize)[(first + from) as usize..=(first + to) as usize];
-            for (column, pixel) in (first + from..).zip(pixels) {
-                offer(pixel, depth.at(column), hit);
-            }
+    edges.spans(block, |row, from, to| {
+        let row = block.rows.0 + row;
+        let depth = plane.along_row(row);
+        let pixels = &mut buffers.row_mut(row as usize)[(first + from) as usize..=(first + to) as usize];
+        for (column, pixel) in (first + from..).zip(pixels) {
+            offer(pixel, depth.at(column), hit);
         }
-    }
+    });
 }
 
 /// What the near camera sees of a triangle, given whether its ordered corners appear counter-clockwise.

@@ -63,8 +63,9 @@ impl CoverageCounts {
         let views: Vec<View> = cameras.axes().iter().map(|axis| View::along(axis, load.window)).collect();
         draw_all(backend, &views, load, |number, buffers| {
             let axis = cameras.axes()[number];
-            axis.near.into_iter().for_each(|camera| tally.add(camera, buffers.near(), buffers.covered()));
-            axis.far.into_iter().for_each(|camera| tally.add(camera, buffers.far(), buffers.covered()));
+            let covered = buffers.covered();
+            axis.near.into_iter().for_each(|camera| tally.add(camera, buffers.near(), covered));
+            axis.far.into_iter().for_each(|camera| tally.add(camera, buffers.far(), covered));
             Ok(())
         })?;
         let counts = tally.counts.into_iter().map(AtomicU64::into_inner).collect();

@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::mesh::TriangleId;
 use crate::raster::{Hit, ItemBufferPair, Side};
 use crate::visibility::estimate::{Estimate, Looking};
+use crate::visibility::leaks::{Pair, RescuedSample, leaks};
 use crate::visibility::pieces::{Facing, Pieces};
 use crate::visibility::rescue::{Candidate, Soundings, tolerance};
 use crate::visibility::{Details, Rescue, Shapes, Sides, Subject};
@@ -24,7 +25,7 @@ pub(super) fn estimate(subject: &Subject<'_>, shapes: &Shapes, looking: &Looking
     let window = Window::around_sphere(options.resolution_for(subject.mesh().triangle_count()));
     let pieces = Pieces::of(subject, shapes, window, options)?;
     let load = Workload { window, memory_limit: options.memory_limit, phase: "visibility", progress: looking.progress };
-    let tally = Tally::of(pieces.count());
+    let tally = Tally::of(pieces.count(), options.rays.seed);
     let views: Vec<View> = looking.cameras.axes().iter().map(|axis| View::along(axis, window)).collect();
     draw_all(&pieces, &views, load, |number, buffers| {
         let sight = Sight::of(&pieces, &views[number], buffers, options.sides);
@@ -36,7 +37,12 @@ pub(super) fn estimate(subject: &Subject<'_>, shapes: &Shapes, looking: &Looking
         return Err(subject.nothing_to_see());
     }
     let (front, back) = visibilities(&pieces, &tally.seen, looking.cameras);
-    let details = Details { rescue: Some(tally.rescue.read()), pieces: Some(pieces.count()), ..Details::default() };
+    let (count, rescue) = (pieces.count(), tally.rescue.read());
+    let rays = tally.rescued.into_rays(&pieces, subject, looking.cameras);
+    // What asks the rays may need the room.
+    drop((pieces, tally.seen));
+    let rescue = Rescue { leaks: leaks(&rays, subject)?, ..rescue };
+    let details = Details { rescue: Some(rescue), pieces: Some(count), ..Details::default() };
     Ok(Estimate { front, back, pooled_below: 0.0, resolution: window.width, details })
 }
 
@@ -45,13 +51,15 @@ struct Tally {
     /// Per piece for its front and its back: Σ weight · cosine, in steps, over the cameras that see it.
     seen: Vec<[AtomicU64; 2]>,
     rescue: RescueTally,
+    rescued: RescuedSample,
     is_anything_shown: AtomicBool,
 }
 
 impl Tally {
-    fn of(pieces: usize) -> Self {
+    fn of(pieces: usize, seed: u64) -> Self {
         let seen = (0..pieces).map(|_| [AtomicU64::new(0), AtomicU64::new(0)]).collect();
-        Self { seen, rescue: RescueTally::default(), is_anything_shown: AtomicBool::new(false) }
+        let (rescue, rescued) = (RescueTally::default(), RescuedSample::new(seed));
+        Self { seen, rescue, rescued, is_anything_shown: AtomicBool::new(false) }
     }
 
     /// Adds what the two cameras of an axis see.
@@ -62,10 +70,14 @@ impl Tally {
             let Some(facing) = sight.pieces.facing(parent, axis.direction) else { continue };
             for (camera, number) in [axis.near, axis.far].into_iter().enumerate() {
                 let Some(number) = number else { continue };
+                let rescued_before = rescue.rescued;
                 if sight.sees(piece, camera, facing, &mut rescue) {
                     let seen = &self.seen[piece.0 as usize][facing.side(camera) as usize];
                     seen.fetch_add(looking.cameras.weight(number) * facing.steps, Ordering::Relaxed);
                     looking.diagram.into_iter().for_each(|diagram| diagram.record(parent, number as usize));
+                    if rescue.rescued > rescued_before {
+                        self.rescued.offer(Pair { piece: piece.0, camera: number });
+                    }
                 }
             }
         }
@@ -138,7 +150,7 @@ impl RescueTally {
     fn read(&self) -> Rescue {
         let [with_pixel, without_pixel, rescued] =
             [&self.with_pixel, &self.without_pixel, &self.rescued].map(|count| count.load(Ordering::Relaxed));
-        Rescue { with_pixel, without_pixel, rescued }
+        Rescue { with_pixel, without_pixel, rescued, leaks: None }
     }
 }
 

@@ -5,7 +5,7 @@ use crate::mesh::TriMesh;
 use crate::visibility::{MeasureOptions, Visibility};
 
 /// First bytes of a kept measurement.
-const MAGIC: &[u8; 8] = b"OUTSEEN1";
+const MAGIC: &[u8; 8] = b"OUTSEEN2";
 
 /// SHA-256.
 type Hash = [u8; 32];

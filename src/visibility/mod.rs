@@ -16,6 +16,7 @@ mod hidden;
 mod importance;
 mod item_buffer;
 mod kept;
+mod leaks;
 mod options;
 pub mod outline;
 mod per_vertex;
@@ -126,6 +127,29 @@ pub struct Rescue {
     pub without_pixel: u64,
     /// Those without that the depth buffer let pass.
     pub rescued: u64,
+    /// How many of those are hidden after all; `None` where no rays could be cast: the backend only draws, and Embree is not
+    /// there.
+    pub leaks: Option<RescueLeaks>,
+}
+
+/// A random sample of the pairs that depth rescue called seen, asked again by exact rays.
+///
+/// A pair leaks if rays toward the camera are blocked from all of four points of the piece: its centroid, and one near each
+/// corner.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct RescueLeaks {
+    /// Pairs asked about: all that were rescued, or 4096 of them.
+    pub sampled: u64,
+    /// Those that leak.
+    pub leaking: u64,
+}
+
+impl RescueLeaks {
+    /// The share that leaks; `None` where nothing was rescued.
+    #[must_use]
+    pub fn rate(&self) -> Option<f64> {
+        (self.sampled > 0).then(|| self.leaking as f64 / self.sampled as f64)
+    }
 }
 
 impl Rescue {

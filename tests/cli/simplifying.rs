@@ -61,3 +61,15 @@ fn several_levels_do_not_fit_one_pipe() {
     assert_eq!(ended.code, 2);
     assert_eq!(names(home.path()), ["bumps.off", "cube.off"]);
 }
+
+#[test]
+fn who_looks_again_for_what_is_hidden_is_told_where_anybody_does() {
+    let home = directory();
+    let options = |flags: &[&str]| {
+        let common = ["simplify", "cube.off", "-o", "x.ply", "-r", "0.5", "--resolution", "64", "--force", "--json"];
+        json(home.path(), &[&common, flags].concat())["options"].clone()
+    };
+    assert_eq!(options(&["--hidden", "delete"])["hidden_backend"], "raster");
+    assert!(options(&["--hidden", "keep"])["hidden_backend"].is_null());
+    assert!(options(&["--metric", "quadric"])["hidden_backend"].is_null());
+}

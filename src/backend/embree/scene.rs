@@ -87,33 +87,11 @@ impl CommittedScene {
         // SAFETY: the device is live.
         let geometry = unsafe { api.rtcNewGeometry(self.device.handle(), sys::RTC_GEOMETRY_TYPE_TRIANGLE) };
         self.device.check("making triangles")?;
-        let vertices = self.positions.len() - PADDING.len();
-        // SAFETY: the buffer holds `vertices` items and the padding behind them, and lives as long as the scene.
-        unsafe {
-            api.rtcSetSharedGeometryBuffer(
-                geometry,
-                sys::RTC_BUFFER_TYPE_VERTEX,
-                0,
-                sys::RTC_FORMAT_FLOAT3,
-                self.positions.as_ptr().cast(),
-                0,
-                size_of::<[f32; 3]>(),
-                vertices,
-            );
-        }
-        // SAFETY: the buffer holds that many items, and lives as long as the scene.
-        unsafe {
-            api.rtcSetSharedGeometryBuffer(
-                geometry,
-                sys::RTC_BUFFER_TYPE_INDEX,
-                0,
-                sys::RTC_FORMAT_UINT3,
-                self.triangles.as_ptr().cast(),
-                0,
-                size_of::<[u32; 3]>(),
-                self.triangles.len(),
-            );
-        }
+        let vertices = &self.positions[..self.positions.len() - PADDING.len()];
+        // SAFETY: positions live as long as the scene, with the padding behind them.
+        unsafe { self.share(geometry, sys::RTC_BUFFER_TYPE_VERTEX, sys::RTC_FORMAT_FLOAT3, vertices) };
+        // SAFETY: triangles live as long as the scene; a row of three indices needs no padding.
+        unsafe { self.share(geometry, sys::RTC_BUFFER_TYPE_INDEX, sys::RTC_FORMAT_UINT3, &self.triangles) };
         // SAFETY: the geometry is live; both filters keep to what the library says of filters.
         unsafe { api.rtcSetGeometryOccludedFilterFunction(geometry, Some(reject_own)) };
         // SAFETY: as above.
@@ -125,6 +103,23 @@ impl CommittedScene {
         // SAFETY: our reference is not used again.
         unsafe { api.rtcReleaseGeometry(geometry) };
         self.device.check("handing over triangles")
+    }
+
+    /// Hands a list over to a geometry, without copying it.
+    ///
+    /// # Safety
+    /// The geometry is live, `format` describes a `T`, and `items` live as long as the scene, with the padding that buffers of
+    /// their kind need.
+    unsafe fn share<T>(
+        &self,
+        geometry: sys::RTCGeometry,
+        kind: sys::RTCBufferType,
+        format: sys::RTCFormat,
+        items: &[T],
+    ) {
+        let (start, size, count) = (items.as_ptr().cast(), size_of::<T>(), items.len());
+        // SAFETY: by the caller's promise; the buffer holds that many items of that size.
+        unsafe { self.device.api().rtcSetSharedGeometryBuffer(geometry, kind, 0, format, start, 0, size, count) };
     }
 
     /// Vertex positions; behind the last one lies padding.
