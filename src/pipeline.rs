@@ -38,7 +38,8 @@ pub use page::PageRequest;
 pub use render::{RenderRequest, Style, render_file};
 pub use side_by_side::{ColumnOrder, Portrait, SideBySide};
 pub use simplify::{
-    LevelReport, LevelRequest, Metric, Simplified, SimplifyReport, SimplifyRequest, SimplifySeconds, simplify_seen,
+    LevelReport, LevelRequest, Metric, Reduction, Simplified, SimplifyReport, SimplifyRequest, SimplifySeconds,
+    simplify_seen,
 };
 pub use verify::{PairReport, VerifyReport, VerifyRequest, verify_file};
 
@@ -85,7 +86,7 @@ pub fn run_simplify(request: &SimplifyRequest, observer: &dyn Observer) -> Resul
     };
     let triangles = mesh.triangle_count();
     let before = request.page.as_ref().map(|_| (mesh.clone(), look.as_ref().map(|look| look.visibility.clone())));
-    let simplified = simplify_seen(mesh, look, request, observer)?;
+    let simplified = simplify_seen(mesh, look, &request.reduction(triangles), observer)?;
     seconds.simplify = clock.lap();
     observer.check()?;
     for (level, wanted) in simplified.levels.iter().zip(&request.levels) {

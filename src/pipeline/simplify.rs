@@ -106,11 +106,31 @@ impl SimplifyRequest {
         SimplifyOptions { targets: self.targets(given), ..self.simplify.clone() }.counts(given).map(drop)
     }
 
+    /// What is to be done with the mesh, which has `given` triangles.
+    pub(super) fn reduction(&self, given: usize) -> Reduction {
+        Reduction {
+            hidden: self.hidden,
+            visibility_power: self.visibility_power,
+            options: SimplifyOptions { targets: self.targets(given), ..self.simplify.clone() },
+        }
+    }
+
     /// One triangle count per level, of `given` triangles; none where only an error bound ends the run.
     fn targets(&self, given: usize) -> Vec<Target> {
         let first_reached = |level: &LevelRequest| level.targets.iter().map(|target| target.count(given)).max();
         self.levels.iter().filter_map(first_reached).map(Target::Triangles).collect()
     }
+}
+
+/// How a mesh that was looked at is reduced.
+#[derive(Debug, Clone)]
+pub struct Reduction {
+    /// What happens to hidden triangles; counts only where someone looked.
+    pub hidden: Hidden,
+    /// p in V^p, 0 to 16; counts only where someone looked.
+    pub visibility_power: f64,
+    /// The collapser's options, targets included; `importance_floor` comes from `hidden`.
+    pub options: SimplifyOptions,
 }
 
 /// Levels of detail of a mesh.
@@ -129,16 +149,18 @@ pub struct Simplified {
 pub fn simplify_seen(
     mesh: TriMesh,
     look: Option<Look>,
-    request: &SimplifyRequest,
+    reduction: &Reduction,
     observer: &dyn Observer,
 ) -> Result<Simplified> {
     let given = mesh.triangle_count();
-    let importance_floor = request.hidden.importance_floor();
-    let options = SimplifyOptions { targets: request.targets(given), importance_floor, ..request.simplify.clone() };
+    let importance_floor = reduction.hidden.importance_floor();
+    // Shares are of the mesh given, whatever leaves it before the collapser begins.
+    let targets = reduction.options.counts(given)?.into_iter().map(Target::Triangles).collect();
+    let options = SimplifyOptions { targets, importance_floor, ..reduction.options.clone() };
     let Some(look) = look else {
         return Ok(Simplified { levels: simplify(&mesh, None, &options, observer)?, hidden_deleted: 0 });
     };
-    let weights = importance(&look.visibility, request.hidden, request.visibility_power)?;
+    let weights = importance(&look.visibility, reduction.hidden, reduction.visibility_power)?;
     let removes = look.hidden.iter().any(|&h| h);
     let seen = if removes { mesh.without_triangles(&look.hidden)? } else { None };
     let Some(seen) = seen else {
