@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use outsight::backend::BackendKind;
-use outsight::camera::Cameras;
+use outsight::camera::{CameraWeights, Cameras};
 use outsight::io::{self, Attributes, ReadOptions, WriteOptions};
 use outsight::mesh::shapes;
 use outsight::pipeline::{ConvergenceReport, ConvergenceRequest, IndependentReference, study_convergence};
@@ -41,7 +41,7 @@ fn distance_from_rays_is_the_distance_of_two_measurements() {
     let by_rays = MeasureOptions { estimator: Estimator::Hemisphere, backend: BackendKind::Embree, rays, ..one_side };
     let reference = Subject::new(&mesh, by_rays.backend).unwrap().measure(&by_rays, &Silent).unwrap();
     let subject = Subject::new(&mesh, BackendKind::Raster).unwrap();
-    for error in report.meshes[0].errors.iter().filter(|error| error.weights == "area") {
+    for error in report.meshes[0].errors.iter().filter(|error| error.weights == CameraWeights::Area) {
         let cameras = Cameras::octahedral(error.cameras);
         let resolution = Some(RESOLUTION);
         let alone = MeasureOptions { cameras, resolution, sides: Sides::One, ..MeasureOptions::default() };
@@ -58,7 +58,7 @@ fn rays_show_the_floor_of_equal_weights() {
     let home = tempfile::tempdir().unwrap();
     let report = study(&home);
     let [equal, area] = report.meshes[0].errors.last_chunk::<2>().unwrap();
-    assert_eq!((equal.cameras, equal.weights, area.weights), (4098, "equal", "area"));
+    assert_eq!((equal.cameras, equal.weights, area.weights), (4098, CameraWeights::Equal, CameraWeights::Area));
     let errors = (equal.against_reference, area.against_reference);
     assert!(errors.0 > FLOOR * errors.1, "{errors:?}");
     assert!(report.meshes[0].reference_error.is_some_and(|error| error > 0.0 && error < errors.0), "{errors:?}");

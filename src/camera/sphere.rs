@@ -1,17 +1,30 @@
 use std::collections::BTreeMap;
 
 use glam::{DMat3, DVec3};
+use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 
 /// How much each camera counts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum CameraWeights {
     /// By the solid angle it owns.
     #[default]
     Area,
     /// All alike, as Zhang & Turk count.
     Equal,
+}
+
+impl CameraWeights {
+    /// The name on the command line and in reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Area => "area",
+            Self::Equal => "equal",
+        }
+    }
 }
 
 /// A line of sight with the cameras at its ends: opposite cameras see along the same lines.

@@ -1,7 +1,7 @@
 use std::io::{self as std_io, Write};
 use std::path::{Path, PathBuf};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::backend::{BackendKind, Workload};
 use crate::camera::{CameraPattern, CameraWeights, Cameras, Window};
@@ -59,7 +59,7 @@ pub struct ConvergenceReport {
 }
 
 /// How V of one mesh depends on the number of cameras.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeshConvergence {
     /// The file.
     pub file: PathBuf,
@@ -76,12 +76,12 @@ pub struct MeshConvergence {
 }
 
 /// How far V from some cameras is off: Σ A |V − V_ref| / Σ A over the triangles' fronts, as counted.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ConvergenceError {
     /// Octahedral cameras.
     pub cameras: usize,
     /// How they count, `equal` or `area`.
-    pub weights: &'static str,
+    pub weights: CameraWeights,
     /// Against 4098 cameras of the same pattern and weights; `None` for these themselves.
     pub against_4098: Option<f64>,
     /// Against the independent reference.
@@ -154,8 +154,17 @@ fn study_one(
 ) -> Result<MeshConvergence> {
     let loaded = io::read(path, &request.read)?;
     observer.mesh_read(path, &loaded)?;
-    let mesh = loaded.mesh;
-    let scene = occluders.around(&mesh)?;
+    convergence_of(path, occluders.around(&loaded.mesh)?, request, observer)
+}
+
+/// How V of one mesh, read from `path`, depends on the number of cameras.
+pub(super) fn convergence_of(
+    path: &Path,
+    scene: Surrounded<'_>,
+    request: &ConvergenceRequest,
+    observer: &dyn Observer,
+) -> Result<MeshConvergence> {
+    let mesh = scene.mesh;
     let mut clock = Clock::start();
     let resolution = request.resolution.unwrap_or_else(|| nested_resolution(mesh.triangle_count()));
     let options = MeasureOptions {
@@ -190,10 +199,7 @@ fn error_of(
     let finest = nested.iter().rev().find(|finest| finest.weights == of_one.weights);
     ConvergenceError {
         cameras: of_one.cameras,
-        weights: match of_one.weights {
-            CameraWeights::Equal => "equal",
-            CameraWeights::Area => "area",
-        },
+        weights: of_one.weights,
         against_4098: finest
             .filter(|finest| finest.cameras != of_one.cameras)
             .map(|finest| mean_difference(subject, &of_one.front, &finest.front)),
@@ -208,11 +214,11 @@ impl MeshConvergence {
         self.file.file_name().unwrap_or(self.file.as_os_str()).to_string_lossy().into_owned()
     }
 
-    fn curve(&self, weights: &'static str, error: impl Fn(&ConvergenceError) -> Option<f64>) -> Curve {
+    fn curve(&self, weights: CameraWeights, error: impl Fn(&ConvergenceError) -> Option<f64>) -> Curve {
         let chosen = self.errors.iter().filter(|e| e.weights == weights);
         let points = chosen.filter_map(|e| Some((e.cameras as f64, error(e)?))).collect();
-        let mark = if weights == "equal" { Mark::Open } else { Mark::Filled };
-        Curve { name: format!("{}, {weights}", self.name()), points, mark }
+        let mark = if weights == CameraWeights::Equal { Mark::Open } else { Mark::Filled };
+        Curve { name: format!("{}, {}", self.name(), weights.name()), points, mark }
     }
 }
 
@@ -240,7 +246,7 @@ impl ConvergenceReport {
             let cell = |error: Option<f64>| error.map(|error| error.to_string()).unwrap_or_default();
             let (triangles, resolution, known_to) = (mesh.triangles, mesh.resolution, cell(mesh.reference_error));
             for e in &mesh.errors {
-                let row = format!("{},{},{},{}", e.cameras, e.weights, cell(e.against_4098), e.against_reference);
+                let row = format!("{},{},{},{}", e.cameras, e.weights.name(), cell(e.against_4098), e.against_reference);
                 writeln!(output, "{file},{triangles},{resolution},{},{known_to},{row}", self.reference)?;
             }
         }
@@ -251,7 +257,8 @@ impl ConvergenceReport {
     #[must_use]
     pub fn plot(&self) -> LogLogPlot {
         let panel = |title: String, error: fn(&ConvergenceError) -> Option<f64>| {
-            let curves = self.meshes.iter().map(|mesh| ["equal", "area"].map(|w| mesh.curve(w, error)).to_vec());
+            let both = [CameraWeights::Equal, CameraWeights::Area];
+            let curves = self.meshes.iter().map(|mesh| both.map(|weights| mesh.curve(weights, error)).to_vec());
             Panel { title, groups: curves.collect() }
         };
         LogLogPlot {
