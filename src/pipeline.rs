@@ -17,11 +17,13 @@ mod explain;
 mod measure;
 mod observation;
 mod page;
+mod preset;
 mod render;
 mod side_by_side;
 mod simplify;
 mod surroundings;
 mod verify;
+mod zt;
 
 pub use compare::{CompareReport, CompareRequest, GeometricReport, TestReport, compare_files};
 pub use convergence::{
@@ -35,6 +37,7 @@ pub use measure::{
 };
 pub use observation::cache_is_file;
 pub use page::PageRequest;
+pub use preset::Preset;
 pub use render::{RenderRequest, Style, render_file};
 pub use side_by_side::{ColumnOrder, Portrait, SideBySide};
 pub use simplify::{
@@ -42,6 +45,11 @@ pub use simplify::{
     simplify_seen,
 };
 pub use verify::{PairReport, VerifyReport, VerifyRequest, verify_file};
+pub use zt::{
+    Cell, Correlation, Improvement, LEVELS, LevelErrors, LevelFinding, LookFinding, ModelFindings, ModelReport,
+    PicturesFinding, PlannedCell, RunFinding, SheetFinding, ViewerFinding, ZtModel, ZtReport, ZtRequest, plan_zt,
+    study_zt,
+};
 
 use std::path::Path;
 use std::time::Instant;
@@ -127,6 +135,9 @@ pub trait Observer: Progress {
     fn measured(&self, _options: &MeasureOptions, _seen: &Visibility) -> Result<()> {
         Ok(())
     }
+
+    /// A study comes to a cell of a model.
+    fn cell(&self, _model: &str, _cell: &str) {}
 
     /// `deleted` of `given` triangles are hidden and leave the mesh before it is simplified.
     ///

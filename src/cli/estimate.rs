@@ -1,6 +1,7 @@
 //! Estimates of memory and time, made before the work.
 
 use outsight::Result;
+use outsight::pipeline::{Cell, Metric, PlannedCell, Preset, ZtRequest};
 use outsight::visibility::{MeasureOptions, VisibilityDiagram, nested_resolution};
 
 /// What a run does.
@@ -143,6 +144,32 @@ fn measure_seconds(triangles: usize, cameras: usize, resolution: u32) -> f64 {
     let side = f64::from(resolution_or_chosen(resolution, triangles as u64));
     let axis = SECONDS_PER_TRIANGLE_AXIS * triangles as f64 + SECONDS_PER_PIXEL_AXIS * side * side;
     axis * cameras as f64 / 2.0 / rayon::current_num_threads() as f64
+}
+
+/// Seconds of one thread per triangle and camera to find how V depends on the number of cameras.
+const CONVERGENCE_SECONDS: f64 = 6e-8;
+/// Seconds of one thread to compare a level with an original, and more for each of the original's triangles.
+const LEVEL_SECONDS: f64 = 1.5;
+const LEVEL_SECONDS_PER_TRIANGLE: f64 = 1e-6;
+
+/// Seconds that a cell of `study zt` takes. Rough.
+pub fn study_seconds(planned: &PlannedCell, request: &ZtRequest) -> f64 {
+    let triangles = planned.triangles;
+    let threads = rayon::current_num_threads() as f64;
+    let look = measure_seconds(triangles, request.cameras.unwrap_or(258), request.resolution.unwrap_or(0));
+    match planned.cell {
+        Cell::Look(_) => look,
+        Cell::Run(preset, metric) => {
+            let again = preset == Preset::Best && metric == Metric::Visibility;
+            let looking = if again { LOOKING_AGAIN * look } else { 0.0 };
+            let level = LEVEL_SECONDS + LEVEL_SECONDS_PER_TRIANGLE * triangles as f64;
+            let levels = request.levels.len() as f64 * level / threads;
+            looking + triangles as f64 / COLLAPSED_TRIANGLES_PER_SECOND + levels
+        }
+        Cell::Pictures(_) => 1.0,
+        Cell::Viewer => 1.0 + triangles as f64 / COLLAPSED_TRIANGLES_PER_SECOND,
+        Cell::Convergence => 2.0 * 4098.0 * CONVERGENCE_SECONDS * triangles as f64 / threads,
+    }
 }
 
 /// Looking again for hidden triangles takes this many times as long as measuring: 2 on a mesh that hides little, 14 on

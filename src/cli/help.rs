@@ -100,6 +100,22 @@ Examples:
   outsight convert - out.ply --input-format stl < in.stl";
 
 /// Behind `outsight study convergence --help`.
+pub const STUDY_ZT: &str = "\
+Looks at every model with the paper's options and with the best ones, simplifies it by quadric error
+alone (QB) and guided by visibility (VG) to seven levels and to the counts that the paper names, and
+says how far each result is from the original, in pictures and in space. Beside each number stands
+what the paper prints, where it prints any.
+
+The directory gets report.html to read, zt.json and tables as .csv, plots as .svg, pictures as .png.
+What was found is kept there under cells/: a run that was stopped goes on with the next cell.
+
+Names of the paper's models: bunny, teapot, dragon, buddha, locking_tori, foot_bone, blade, skull,
+motor, locomotive. A file named so needs no NAME=.
+
+Examples:
+  outsight study zt bunny.ply motor=engine.ply -o zt/ --dry-run
+  outsight study zt bunny.ply motor=engine.ply skull=head-ct.ply -o zt/";
+
 pub const STUDY_CONVERGENCE: &str = "\
 Compares visibility from 6 to 4098 octahedral cameras, counted alike and by the solid angle they
 own, with the most of them, and with a reference that is found without these cameras: rays all over

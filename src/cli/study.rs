@@ -1,5 +1,7 @@
 //! `outsight study`: tables and figures about the method itself.
 
+mod zt;
+
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand, ValueEnum};
@@ -31,6 +33,9 @@ enum Study {
     /// How exact visibility is, by the number of cameras and how they count
     #[command(after_help = help::STUDY_CONVERGENCE)]
     Convergence(ConvergenceFlags),
+    /// Tables 1 and 2 and figures 1 to 8 of Zhang & Turk 2002, on meshes of your own
+    #[command(after_help = help::STUDY_ZT)]
+    Zt(zt::Flags),
 }
 
 #[derive(Debug, Args)]
@@ -94,6 +99,7 @@ struct Object<'a> {
 pub fn run(flags: &Flags, console: &Console) -> std::result::Result<(), Failure> {
     match &flags.study {
         Study::Convergence(flags) => convergence(flags, console),
+        Study::Zt(flags) => zt::run(flags, console),
     }
 }
 

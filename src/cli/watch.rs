@@ -138,6 +138,10 @@ impl Observer for Watch<'_> {
         Ok(())
     }
 
+    fn cell(&self, model: &str, cell: &str) {
+        self.console.note(&format!("{model}: {cell}"));
+    }
+
     fn hidden_deleted(&self, deleted: usize, given: usize) -> Result<()> {
         let share = 100.0 * deleted as f64 / given.max(1) as f64;
         let found =

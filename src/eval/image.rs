@@ -1,5 +1,5 @@
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::light::Light;
 use super::pictures::{EMPTY, Easel, PIXELS, Pictures, Sitter};
@@ -35,7 +35,7 @@ pub struct ImageError {
 }
 
 /// Error of pictures under one light, as in [`ImageError`].
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct GreyError {
     /// As [`ImageError::image_rms`].
     pub image_rms: f64,

@@ -1,4 +1,4 @@
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::geometric::ReferenceSurface;
 use crate::camera::Frame;
@@ -6,7 +6,7 @@ use crate::mesh::adjacency::{CornerLists, Edges, TopologyCounts};
 use crate::mesh::{TriMesh, TriangleId};
 
 /// What is wrong with the triangles of a mesh that should look like the reference.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct TriangleQuality {
     /// Triangles that are turned over: the surface of the reference nearest to their centroid faces against them. Where
     /// several of its triangles are as near, none of them faces the same way.

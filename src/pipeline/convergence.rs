@@ -143,7 +143,7 @@ pub fn study_convergence(request: &ConvergenceRequest, observer: &dyn Observer) 
     let occluders = Surroundings::read(&request.occluders, &request.read)?;
     let study = |path: &PathBuf| study_one(path, &occluders, request, observer);
     let meshes = request.inputs.iter().map(study).collect::<Result<_>>()?;
-    Ok(ConvergenceReport { reference: against.setting().to_string(), reference_samples: against.samples(), meshes })
+    Ok(ConvergenceReport::of(against, meshes))
 }
 
 fn study_one(
@@ -223,6 +223,11 @@ impl MeshConvergence {
 }
 
 impl ConvergenceReport {
+    /// The report on these meshes.
+    pub(super) fn of(against: IndependentReference, meshes: Vec<MeshConvergence>) -> Self {
+        Self { reference: against.setting().to_string(), reference_samples: against.samples(), meshes }
+    }
+
     /// The reference in words.
     #[must_use]
     pub fn reference_in_words(&self) -> String {
@@ -246,7 +251,8 @@ impl ConvergenceReport {
             let cell = |error: Option<f64>| error.map(|error| error.to_string()).unwrap_or_default();
             let (triangles, resolution, known_to) = (mesh.triangles, mesh.resolution, cell(mesh.reference_error));
             for e in &mesh.errors {
-                let row = format!("{},{},{},{}", e.cameras, e.weights.name(), cell(e.against_4098), e.against_reference);
+                let row =
+                    format!("{},{},{},{}", e.cameras, e.weights.name(), cell(e.against_4098), e.against_reference);
                 writeln!(output, "{file},{triangles},{resolution},{},{known_to},{row}", self.reference)?;
             }
         }

@@ -1,6 +1,6 @@
 use std::path::PathBuf;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::eval::image_errors;
@@ -15,7 +15,8 @@ use crate::simplify::{Level, SimplifyOptions, Stop, Target, Topology, TopologyCh
 use crate::visibility::{Hidden, Look, MeasureOptions, Visibility, importance};
 
 /// What orders the collapses.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Metric {
     /// Quadric error weighted by visibility (VG).
     #[default]

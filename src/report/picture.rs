@@ -108,6 +108,35 @@ impl Picture {
         Ok(Self { width, height, rgb })
     }
 
+    /// A picture of the bytes of a PNG file of 8-bit RGB, as [`Self::write_png`] writes them.
+    ///
+    /// # Errors
+    /// What is wrong with them.
+    pub fn from_png(bytes: &[u8]) -> Result<Self> {
+        let wrong = |message: String| Error::Parse { place: "a PNG picture".to_owned(), message };
+        let mut reader = png::Decoder::new(io::Cursor::new(bytes)).read_info().map_err(|e| wrong(e.to_string()))?;
+        let mut rgb = vec![0; reader.output_buffer_size().unwrap_or(0)];
+        let frame = reader.next_frame(&mut rgb).map_err(|e| wrong(e.to_string()))?;
+        if (frame.color_type, frame.bit_depth) != (png::ColorType::Rgb, png::BitDepth::Eight) {
+            return Err(wrong("it is not of 8-bit RGB".to_owned()));
+        }
+        Self::from_rgb(frame.width, frame.height, rgb)
+    }
+
+    /// The picture at half of its width and height, each pixel the mean of four; an odd last row or column is left out.
+    #[must_use]
+    pub fn halved(&self) -> Self {
+        let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
+        let mut half = Self::filled(width, height, WHITE);
+        for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+            let four = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| self.pixel(2 * x + i, 2 * y + j).unwrap_or(WHITE));
+            let mean =
+                |channel: usize| four.iter().map(|pixel| u32::from(pixel[channel])).sum::<u32>().div_ceil(4) as u8;
+            half.set(x, y, [0, 1, 2].map(mean));
+        }
+        half
+    }
+
     /// Columns.
     #[must_use]
     pub fn width(&self) -> u32 {

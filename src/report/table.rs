@@ -58,6 +58,33 @@ impl Table {
         self
     }
 
+    /// The headings, each with its unit in brackets.
+    #[must_use]
+    pub fn heads(&self) -> Vec<String> {
+        let unit = |column: usize| self.units.as_ref().and_then(|units| units.get(column)).filter(|u| !u.is_empty());
+        let with_unit = |(column, head): (usize, &String)| match unit(column) {
+            Some(unit) => format!("{head} ({unit})"),
+            None => head.clone(),
+        };
+        self.headers.iter().enumerate().map(with_unit).collect()
+    }
+
+    /// The rows, a cell for each heading.
+    #[must_use]
+    pub fn rows(&self) -> &[Vec<String>] {
+        &self.rows
+    }
+
+    /// The table as GitHub writes it; the first column to the left, the others to the right.
+    #[must_use]
+    pub fn to_markdown(&self) -> String {
+        let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+        let rule = (0..self.headers.len()).map(|column| if column == 0 { "---" } else { "---:" });
+        let rule: Vec<String> = rule.map(str::to_owned).collect();
+        let rows: String = self.rows.iter().map(|row| line(row)).collect();
+        format!("{}{}{rows}", line(&self.heads()), line(&rule))
+    }
+
     /// All lines of text, the headings' included.
     fn lines(&self) -> impl Iterator<Item = &Vec<String>> {
         std::iter::once(&self.headers).chain(&self.units).chain(&self.rows)

@@ -81,7 +81,7 @@ pub enum Stop {
 }
 
 /// What a run changed in the topology, against its input.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct TopologyChange {
     /// Pairs of triangles back to back that were cancelled. Where a collapse lays two triangles onto each other the
     /// same way round, one of them goes; that is not counted here.

@@ -17,10 +17,10 @@ use crate::report::page::{Content, Fact, Legend, MODELS_BYTES, Page, Section, Ta
 use crate::report::table::thousands;
 use crate::visibility::{MeasureOptions, Subject, Visibility};
 use figures::{histograms, pictures};
-use shown::models;
+pub(super) use shown::models;
 
 /// Colours of every page: brightness grows with visibility, for every eye and on grey paper.
-const MAP: ColourMap = ColourMap::Cividis;
+pub(super) const MAP: ColourMap = ColourMap::Cividis;
 
 /// A page to write beside a result.
 #[derive(Debug, Clone, PartialEq)]
@@ -178,14 +178,8 @@ impl Show<'_> {
 
     fn viewer(&self, up: glam::DVec3, progress: &dyn Progress) -> Result<Section> {
         let models = models(&self.exhibits(), MODELS_BYTES, progress)?;
-        let legend = Legend {
-            title: "Visibility V".to_owned(),
-            map: MAP,
-            low: "no camera sees it".to_owned(),
-            high: "all of it sees open sky".to_owned(),
-        };
         let [toward, ..] = views_around(up).map(|d| d.to_array());
-        let viewer = Viewer { models, legend: Some(legend), toward, up: up.to_array() };
+        let viewer = Viewer { models, legend: Some(legend()), toward, up: up.to_array() };
         Ok(section("In three dimensions", VIEWER, Content::Viewer(viewer)))
     }
 
@@ -219,6 +213,17 @@ const HEAT: &str = "The same colours from three sides.";
 const PICTURES: &str = "Each result beside what differs from the original: white where the pictures are equal, full red from 64 \
     grey levels of 255.";
 
-fn section(heading: &str, text: &str, content: Content) -> Section {
+/// What the colours of every page mean.
+pub(super) fn legend() -> Legend {
+    Legend {
+        title: "Visibility V".to_owned(),
+        map: MAP,
+        low: "no camera sees it".to_owned(),
+        high: "all of it sees open sky".to_owned(),
+    }
+}
+
+/// A section of a page.
+pub(super) fn section(heading: &str, text: &str, content: Content) -> Section {
     Section { heading: heading.to_owned(), text: text.to_owned(), content }
 }

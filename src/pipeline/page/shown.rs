@@ -21,7 +21,11 @@ const STEPS: f64 = 65536.0;
 const CAUTION: f64 = 0.9;
 
 /// All models of a viewer in the frame of the first, each within its share of `bytes` of the page.
-pub(super) fn models(exhibits: &[&Exhibit<'_>], bytes: usize, progress: &dyn Progress) -> Result<Vec<Model>> {
+pub(in crate::pipeline) fn models(
+    exhibits: &[&Exhibit<'_>],
+    bytes: usize,
+    progress: &dyn Progress,
+) -> Result<Vec<Model>> {
     let Some(original) = exhibits.first() else { return Ok(Vec::new()) };
     let frame = Frame::of(original.mesh);
     let share = bytes / exhibits.len();

@@ -8,6 +8,8 @@
 mod markup;
 mod model;
 
+use serde::{Deserialize, Serialize};
+
 use crate::error::{Error, Result};
 use crate::report::colour::ColourMap;
 
@@ -120,7 +122,7 @@ pub struct Viewer {
 }
 
 /// A model of a viewer.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Model {
     /// Which one.
     pub name: String,

@@ -1,0 +1,193 @@
+//! `outsight study zt`: the tables and figures of Zhang & Turk 2002 on meshes of one's own.
+
+use std::ffi::OsString;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use outsight::error::{Error, Result};
+use outsight::pipeline::{LEVELS, PlannedCell, Preset, ZtModel, ZtReport, ZtRequest, plan_zt, study_zt};
+use outsight::report::paper::parse_model_argument;
+use serde::Serialize;
+
+use crate::cli::console::Console;
+use crate::cli::estimate::{Task, study_seconds};
+use crate::cli::failure::Failure;
+use crate::cli::flags::{ReadingFlags, UpFlags};
+use crate::cli::system::peak_mib;
+use crate::cli::text::{duration, table};
+use crate::cli::values;
+use crate::cli::watch::Watch;
+
+#[derive(Debug, Args)]
+pub struct Flags {
+    /// Mesh files; NAME=FILE says which of the paper's models a file stands for, as in motor=engine.ply
+    #[arg(value_name = "MODELS", required = true)]
+    models: Vec<OsString>,
+    #[command(flatten)]
+    reading: ReadingFlags,
+    /// Directory for all that is found; the next run with the same directory goes on where this one ended
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// Whose options: the paper's, the best, or each in turn
+    #[arg(long, value_name = "NAME", default_value = "both")]
+    preset: Presets,
+    /// Shares of the triangles at which simplifiers are compared, descending [default: 1/2, 1/4, … 1/128]
+    #[arg(long, value_name = "R,R,…", value_delimiter = ',', value_parser = values::ratio)]
+    levels: Vec<f64>,
+    /// Samples on each mesh for the geometric error
+    #[arg(long, value_name = "N", default_value_t = 200_000, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    samples: u64,
+    /// Octahedral cameras: 6, 18, 66, 258, 1026, 4098 [default: 258]
+    #[arg(long, value_name = "N")]
+    cameras: Option<usize>,
+    /// Pixels along each image's side, 16 to 16384 [best: by triangles, paper: 480]
+    #[arg(long, value_name = "W", value_parser = clap::value_parser!(u32).range(16..=16384))]
+    resolution: Option<u32>,
+    /// Leave out figure 3, how V depends on the number of cameras, which takes longest
+    #[arg(long)]
+    no_convergence: bool,
+    /// Print what would be computed, and how long it may take
+    #[arg(long)]
+    dry_run: bool,
+    #[command(flatten)]
+    up: UpFlags,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Presets {
+    /// Nearest to the text of Zhang & Turk 2002
+    Paper,
+    /// The best results
+    Best,
+    /// Each in turn
+    Both,
+}
+
+/// What `--dry-run` prints.
+#[derive(Debug, Serialize)]
+struct Plan {
+    cells: Vec<PlannedCell>,
+    /// For what is not there yet.
+    estimated_seconds: f64,
+}
+
+/// The library's report with what only the program knows.
+#[derive(Debug, Serialize)]
+struct Object<'a> {
+    options: serde_json::Value,
+    #[serde(flatten)]
+    report: &'a ZtReport,
+    peak_mb: Option<f64>,
+}
+
+impl Flags {
+    fn request(&self, console: &Console) -> Result<ZtRequest> {
+        Ok(ZtRequest {
+            models: self.models.iter().map(|argument| model(argument)).collect::<Result<_>>()?,
+            read: self.reading.options(&console.global),
+            presets: match self.preset {
+                Presets::Paper => vec![Preset::Paper],
+                Presets::Best => vec![Preset::Best],
+                Presets::Both => Preset::ALL.to_vec(),
+            },
+            levels: if self.levels.is_empty() { LEVELS.to_vec() } else { self.levels.clone() },
+            samples: self.samples,
+            seed: console.global.seed,
+            cameras: self.cameras,
+            resolution: self.resolution,
+            convergence: !self.no_convergence,
+            up: self.up.up,
+            memory_limit: console.global.memory_limit,
+            output: self.output.clone(),
+        })
+    }
+}
+
+/// A model as it was named, called by its file's name without what follows the first dot.
+fn model(argument: &OsString) -> Result<ZtModel> {
+    let named = parse_model_argument(argument)?;
+    let name = named.file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let name = name.split('.').next().unwrap_or_default().to_owned();
+    if name.is_empty() {
+        let message = format!("{} has no name that files could be named after", named.file.display());
+        return Err(Error::Option { name: "MODELS", message });
+    }
+    Ok(ZtModel { name, path: named.file, paper: named.model })
+}
+
+/// Studies the models, or says what that would take.
+pub fn run(flags: &Flags, console: &Console) -> std::result::Result<(), Failure> {
+    let request = flags.request(console)?;
+    check_directory(&request.output, console.global.force)?;
+    if flags.dry_run {
+        return dry_run(&request, console);
+    }
+    let task = Task::Study { resolution: flags.resolution };
+    let report = study_zt(&request, &Watch::new(console, task).deleting_knowingly(true))?;
+    let object = Object { options: options(&request), report: &report, peak_mb: peak_mib() };
+    let json = console.to_json(&object)?;
+    report.write(&request, &json)?;
+    console.result(&object, &text(&report, &request.output), true)
+}
+
+/// The options in force.
+fn options(request: &ZtRequest) -> serde_json::Value {
+    serde_json::json!({
+        "presets": request.presets,
+        "levels": request.levels,
+        "samples": request.samples,
+        "seed": request.seed,
+        "cameras": request.cameras,
+        "resolution": request.resolution,
+        "convergence": request.convergence,
+        "up": request.up,
+    })
+}
+
+/// A study's files are replaced by its next run; a directory with anything else in it is not touched.
+fn check_directory(directory: &Path, force: bool) -> Result<()> {
+    let Ok(mut entries) = fs::read_dir(directory) else { return Ok(()) };
+    let ours = directory.join("cells").is_dir();
+    if ours || force || entries.next().is_none() {
+        return Ok(());
+    }
+    let message = "holds files that no study made; give another directory, or --force".to_owned();
+    Err(Error::Write { path: directory.to_owned(), message })
+}
+
+fn dry_run(request: &ZtRequest, console: &Console) -> std::result::Result<(), Failure> {
+    let cells = plan_zt(request)?;
+    let seconds = |cell: &PlannedCell| if cell.done { 0.0 } else { study_seconds(cell, request) };
+    let estimated_seconds = cells.iter().map(seconds).sum();
+    let row = |cell: &PlannedCell| {
+        let state = if cell.done { "found".to_owned() } else { duration(seconds(cell)) };
+        vec![cell.model.clone(), cell.cell.name(), state]
+    };
+    let rows: Vec<_> = cells.iter().map(row).collect();
+    let left = cells.iter().filter(|cell| !cell.done).count();
+    let text = format!(
+        "{}{left} of {} cells to compute, about {}\n",
+        table(&["model", "cell", "time"], &rows),
+        cells.len(),
+        duration(estimated_seconds)
+    );
+    console.result(&Plan { cells, estimated_seconds }, &text, true)
+}
+
+fn text(report: &ZtReport, directory: &Path) -> String {
+    let stands = report.models.iter().filter(|model| model.stand.model().is_some());
+    let stands: String = stands.map(|m| format!("{}: {}\n", m.findings.name, m.stand_in_words)).collect();
+    let correlations = report.correlations.iter().filter_map(|c| {
+        let rank = c.rank_correlation?;
+        Some(format!("rank correlation of V(M) and less error, {}: {rank:.2} ({} models)\n", c.preset.name(), c.models))
+    });
+    format!(
+        "Visibility (table 1), in brackets what the paper prints\n{}\n\
+         Image error of VG against QB (table 2)\n{}\n{stands}{}written  {}\n",
+        report.table1(),
+        report.table2(),
+        correlations.collect::<String>(),
+        directory.join("report.html").display(),
+    )
+}

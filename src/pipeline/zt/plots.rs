@@ -1,0 +1,90 @@
+//! Figures 3 and 4 and the correlation of V(M) with the improvement, as plots.
+
+use std::io;
+
+use super::cell::{LevelErrors, LevelFinding, RunFinding};
+use super::report::{ModelReport, ZtReport};
+use crate::pipeline::{ConvergenceReport, IndependentReference, Metric, Preset};
+use crate::report::plot::{LogLogPlot, MethodCurves, NamedPoint, ScatterGroup, ScatterPlot, TwoAxisPlot};
+
+/// A plot and its file's name.
+#[derive(Clone)]
+pub(super) struct Plot {
+    pub file: String,
+    /// Whose it is; `None` for one of all models.
+    pub model: Option<String>,
+    pub caption: String,
+    pub svg: String,
+}
+
+impl ZtReport {
+    /// How V(M) goes with the improvement over QB `paper`, a group of points per preset; `None` for a single model.
+    pub(super) fn correlation_plot(&self) -> io::Result<Option<Plot>> {
+        if self.models.len() < 2 {
+            return Ok(None);
+        }
+        let group = |preset: Preset| {
+            let point = |model: &ModelReport| {
+                let (x, y) = (model.visibility(preset)?, model.less_error(preset, Preset::Paper)?);
+                Some(NamedPoint { name: model.findings.name.clone(), x, y })
+            };
+            ScatterGroup {
+                name: format!("VG {}", preset.name()),
+                points: self.models.iter().filter_map(point).collect(),
+            }
+        };
+        let plot = ScatterPlot {
+            title: "less image error than QB paper".to_owned(),
+            x: "visibility of the model, V(M)".to_owned(),
+            y: "less image error, mean over the levels (%)".to_owned(),
+            groups: self.presets().into_iter().map(group).collect(),
+        };
+        let caption = "Less image error than QB paper, by the visibility of the model".to_owned();
+        Ok(Some(Plot { file: "correlation.svg".to_owned(), model: None, caption, svg: plot.to_svg()? }))
+    }
+}
+
+impl ModelReport {
+    /// Figure 4: both errors of QB and VG by the number of triangles, a plot per preset.
+    pub(super) fn error_plots(&self) -> io::Result<Vec<Plot>> {
+        let presets = self.findings.looks.iter().map(|look| look.preset);
+        presets.map(|preset| self.error_plot(preset)).collect()
+    }
+
+    fn error_plot(&self, preset: Preset) -> io::Result<Plot> {
+        let name = &self.findings.name;
+        let runs = [("QB", Metric::Quadric), ("VG", Metric::Visibility)];
+        let method = |(name, metric): (&str, Metric)| Some(curves(name, self.run(preset, metric)?));
+        let plot = TwoAxisPlot {
+            title: format!("{name}, preset {}", preset.name()),
+            left: "image error, RMSE (grey levels)".to_owned(),
+            right: "geometric error, RMS (% of the diagonal)".to_owned(),
+            methods: runs.into_iter().filter_map(method).collect(),
+        };
+        let caption = format!("Image and geometric error of QB and VG, preset {} (Fig. 4)", preset.name());
+        let file = format!("{name}-errors-{}.svg", preset.name());
+        Ok(Plot { file, model: Some(name.clone()), caption, svg: plot.to_svg()? })
+    }
+
+    /// Figure 3: how exact V is by the number of cameras.
+    pub(super) fn convergence_plot(&self) -> io::Result<Option<Plot>> {
+        let Some(convergence) = &self.findings.convergence else { return Ok(None) };
+        let of_one = ConvergenceReport::of(IndependentReference::Fibonacci, vec![convergence.clone()]);
+        let plot: LogLogPlot = of_one.plot();
+        let caption = "Mean error of V by the number of cameras (Fig. 3)".to_owned();
+        let name = &self.findings.name;
+        Ok(Some(Plot {
+            file: format!("{name}-convergence.svg"),
+            model: Some(name.clone()),
+            caption,
+            svg: plot.to_svg()?,
+        }))
+    }
+}
+
+fn curves(name: &str, run: &RunFinding) -> MethodCurves {
+    let points = |error: fn(&LevelErrors) -> f64| -> Vec<(usize, f64)> {
+        run.shared_levels().map(|level: &LevelFinding| (level.triangles, error(&level.errors))).collect()
+    };
+    MethodCurves { name: name.to_owned(), left: points(|e| e.image_rmse), right: points(|e| e.geometric_rms) }
+}

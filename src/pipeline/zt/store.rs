@@ -1,0 +1,102 @@
+//! Where findings lie, so that a killed run loses at most the cell in work.
+
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::cell::{Cell, Finding, LookFinding, PicturesFinding, RunFinding, ViewerFinding};
+use super::{ZtModel, ZtRequest};
+use crate::error::{Error, Result};
+use crate::io;
+use crate::pipeline::MeshConvergence;
+
+/// Directory of the findings in the study's.
+const CELLS: &str = "cells";
+
+/// The findings of one model.
+pub(super) struct Store<'a> {
+    /// The study's directory.
+    root: &'a Path,
+    /// Where this model's findings lie.
+    cells: PathBuf,
+    model: &'a ZtModel,
+    request: &'a ZtRequest,
+    /// SHA-256 of the model's file.
+    file_hash: String,
+}
+
+/// A finding as it lies in its file.
+#[derive(Serialize, Deserialize)]
+struct Kept<T> {
+    key: String,
+    finding: T,
+}
+
+impl<'a> Store<'a> {
+    /// The findings of `model` under the options of `request`.
+    ///
+    /// # Errors
+    /// [`Error::Read`] if the model's file cannot be read.
+    pub fn of(model: &'a ZtModel, request: &'a ZtRequest) -> Result<Self> {
+        let bytes = fs::read(&model.path).map_err(|source| Error::Read { path: model.path.clone(), source })?;
+        let cells = request.output.join(CELLS).join(&model.name);
+        Ok(Self { root: &request.output, cells, model, request, file_hash: hexadecimal(&bytes) })
+    }
+
+    /// Directory of this model: findings, and measurements for them.
+    pub fn cells(&self) -> &Path {
+        &self.cells
+    }
+
+    /// Whether an earlier run found it.
+    pub fn has(&self, cell: Cell) -> Result<bool> {
+        Ok(match cell {
+            Cell::Look(_) => self.find::<LookFinding>(cell)?.is_some(),
+            Cell::Run(..) => self.find::<RunFinding>(cell)?.is_some(),
+            Cell::Pictures(_) => self.find::<PicturesFinding>(cell)?.is_some(),
+            Cell::Viewer => self.find::<ViewerFinding>(cell)?.is_some(),
+            Cell::Convergence => self.find::<MeshConvergence>(cell)?.is_some(),
+        })
+    }
+
+    /// What an earlier run found; `None` if it found nothing, by other options, or its files are gone.
+    pub fn find<T: Finding>(&self, cell: Cell) -> Result<Option<T>> {
+        let path = self.file(cell);
+        let text = match fs::read_to_string(&path) {
+            Ok(text) => text,
+            Err(e) if e.kind() == ErrorKind::NotFound => return Ok(None),
+            Err(source) => return Err(Error::Read { path, source }),
+        };
+        // A file that this version cannot read was not written by it: the cell is computed again.
+        let Ok(kept) = serde_json::from_str::<Kept<T>>(&text) else { return Ok(None) };
+        let whole =
+            kept.key == self.key(cell) && kept.finding.files().iter().all(|file| self.root.join(file).is_file());
+        Ok(whole.then_some(kept.finding))
+    }
+
+    /// Keeps a finding, when all of its files are written.
+    pub fn keep<T: Finding>(&self, cell: Cell, finding: &T) -> Result<()> {
+        let path = self.file(cell);
+        let kept = Kept { key: self.key(cell), finding };
+        let text = serde_json::to_string_pretty(&kept)
+            .map_err(|e| Error::Write { path: path.clone(), message: e.to_string() })?;
+        io::write_atomic(&path, true, |out| writeln!(out, "{text}"))
+    }
+
+    fn file(&self, cell: Cell) -> PathBuf {
+        self.cells.join(format!("{}.json", cell.name()))
+    }
+
+    /// SHA-256 of the version, the model's file and every option that changes a finding.
+    fn key(&self, cell: Cell) -> String {
+        let words = self.request.words(self.model, cell);
+        hexadecimal(format!("Outsight {}, {words}, {}", env!("CARGO_PKG_VERSION"), self.file_hash).as_bytes())
+    }
+}
+
+fn hexadecimal(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}

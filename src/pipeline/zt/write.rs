@@ -1,0 +1,52 @@
+//! The files of a finished study.
+
+use std::io;
+use std::path::Path;
+
+use super::ZtRequest;
+use super::plots::Plot;
+use super::report::{ModelReport, ZtReport};
+use crate::error::{Error, Result};
+use crate::io::write_atomic;
+use crate::report::outline::outline_picture;
+use crate::visibility::outline::Outline;
+
+/// Points along the outline of figure 1, and cameras around it: a pixel or more each.
+const OUTLINE_SAMPLES: usize = 900;
+const OUTLINE_CAMERAS: usize = 360;
+
+impl ZtReport {
+    /// Writes tables, plots and `json` into the study's directory; what an earlier run wrote there is replaced.
+    ///
+    /// # Errors
+    /// [`crate::Error::Write`].
+    pub fn write(&self, request: &ZtRequest, json: &str) -> Result<()> {
+        let write = |name: &str, how: &dyn Fn(&mut dyn io::Write) -> io::Result<()>| {
+            write_atomic(&request.output.join(Path::new(name)), true, |out| how(out))
+        };
+        write("zt.json", &|out| out.write_all(json.as_bytes()))?;
+        write("models.csv", &|out| self.write_models_csv(out))?;
+        write("levels.csv", &|out| self.write_levels_csv(out))?;
+        write("convergence.csv", &|out| self.write_convergence_csv(out))?;
+        let outline = Outline::harbour();
+        let picture = outline_picture(&outline, &outline.diagram(OUTLINE_SAMPLES, OUTLINE_CAMERAS));
+        write("outline.png", &|out| picture.write_png(out))?;
+        write("tables.md", &|out| write!(out, "{}\n{}", self.table1().to_markdown(), self.table2().to_markdown()))?;
+        let plots = self.plots(&request.output)?;
+        for plot in &plots {
+            write(&plot.file, &|out| out.write_all(plot.svg.as_bytes()))?;
+        }
+        let html = self.page(request, &plots)?.to_html()?;
+        write("report.html", &|out| out.write_all(html.as_bytes()))
+    }
+
+    fn plots(&self, directory: &Path) -> Result<Vec<Plot>> {
+        let of_model =
+            |model: &ModelReport| Ok([model.error_plots()?, model.convergence_plot()?.into_iter().collect()].concat());
+        let all = || -> io::Result<Vec<Plot>> {
+            let models: Vec<Vec<Plot>> = self.models.iter().map(of_model).collect::<io::Result<_>>()?;
+            Ok(self.correlation_plot()?.into_iter().chain(models.into_iter().flatten()).collect())
+        };
+        all().map_err(|e| Error::Write { path: directory.to_owned(), message: e.to_string() })
+    }
+}
