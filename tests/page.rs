@@ -95,7 +95,8 @@ fn more_than_150_000_triangles_are_shown_as_a_level_of_detail_that_says_so() {
 #[test]
 fn compare_puts_every_mesh_on_one_page() {
     let folder = reported();
-    let arguments = ["compare", HOSTILE, "<b>small.ply", HOSTILE, "--surface-samples", "1000", "--report", "c.html", "--json"];
+    let arguments =
+        ["compare", HOSTILE, "<b>small.ply", HOSTILE, "--surface-samples", "1000", "--report", "c.html", "--json"];
     let ended = outsight(folder.path(), &arguments).success();
     let object: Value = serde_json::from_slice(&ended.get_output().stdout).unwrap();
     assert_eq!(object["page"], "c.html");

@@ -146,8 +146,6 @@ fn measure_seconds(triangles: usize, cameras: usize, resolution: u32) -> f64 {
     axis * cameras as f64 / 2.0 / rayon::current_num_threads() as f64
 }
 
-/// Seconds of one thread per triangle and camera to find how V depends on the number of cameras.
-const CONVERGENCE_SECONDS: f64 = 6e-8;
 /// Seconds of one thread to compare a level with an original, and more for each of the original's triangles.
 const LEVEL_SECONDS: f64 = 1.5;
 const LEVEL_SECONDS_PER_TRIANGLE: f64 = 1e-6;
@@ -168,7 +166,7 @@ pub fn study_seconds(planned: &PlannedCell, request: &ZtRequest) -> f64 {
         }
         Cell::Pictures(_) => 1.0,
         Cell::Viewer => 1.0 + triangles as f64 / COLLAPSED_TRIANGLES_PER_SECOND,
-        Cell::Convergence => 2.0 * 4098.0 * CONVERGENCE_SECONDS * triangles as f64 / threads,
+        Cell::Convergence => 2.0 * measure_seconds(triangles, 4098, request.resolution.unwrap_or(480)),
     }
 }
 

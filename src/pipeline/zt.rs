@@ -241,7 +241,7 @@ impl ZtRequest {
                 let presets: Vec<String> = self.presets.iter().map(|&preset| look(preset)).collect();
                 format!("{read:?} {presets:?} {} {} models", run(), self.models.len())
             }
-            Cell::Convergence => format!("{read:?} {:?}", self.resolution),
+            Cell::Convergence => format!("{read:?} {:?}", self.measure(Preset::Paper).resolution),
         }
     }
 }

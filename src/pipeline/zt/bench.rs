@@ -198,14 +198,15 @@ impl<'a> Bench<'a> {
         Ok(ViewerFinding { models: models(&exhibits, share, self.observer)? })
     }
 
-    /// How V depends on the number of cameras; the second reference shares no camera with the pattern.
+    /// How V depends on the number of cameras, in the paper's pictures; the second reference shares no camera with the
+    /// pattern.
     pub fn convergence(&self) -> Result<MeshConvergence> {
         let request = ConvergenceRequest {
             inputs: Vec::new(),
             occluders: Vec::new(),
             read: self.request.read.clone(),
             against: IndependentReference::Fibonacci,
-            resolution: self.request.resolution,
+            resolution: self.request.measure(Preset::Paper).resolution,
             memory_limit: self.request.memory_limit,
         };
         convergence_of(&self.model.path, alone(self.mesh()), &request, self.observer)
