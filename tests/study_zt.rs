@@ -23,8 +23,8 @@ fn request(home: &Path, meshes: &[(&str, TriMesh)]) -> ZtRequest {
     ZtRequest {
         models: meshes.iter().map(model).collect(),
         read: ReadOptions::default(),
-        presets: Preset::ALL.to_vec(),
-        levels: vec![0.5, 0.1],
+        presets: vec![Preset::Best],
+        levels: vec![0.5],
         samples: 1000,
         seed: 0,
         cameras: Some(18),
@@ -40,7 +40,11 @@ fn model<'a>(report: &'a ZtReport, name: &str) -> &'a ModelReport {
     report.models.iter().find(|model| model.findings.name == name).unwrap()
 }
 
-/// On a convex body every triangle's V is 1, exactly where F is seen or not seen, so that visibility changes no collapse.
+/// On a convex body every triangle's V is 1, exactly where F is seen or not seen, so that visibility has nothing to say.
+/// On a ball many edges cost the same; which of them goes first is rounding's choice and moves the image error by this many
+/// percent at most.
+const TIES: f64 = 1.0;
+
 #[test]
 fn on_a_convex_body_visibility_changes_nothing() {
     let home = tempfile::tempdir().unwrap();
@@ -48,7 +52,7 @@ fn on_a_convex_body_visibility_changes_nothing() {
     let report = study_zt(&ZtRequest { presets: vec![Preset::Paper], ..request }, &Silent).unwrap();
     let ball = model(&report, "ball");
     assert_eq!(ball.visibility(Preset::Paper), Some(1.0));
-    assert_eq!(ball.less_error(Preset::Paper, Preset::Paper), Some(0.0));
+    assert!(ball.less_error(Preset::Paper, Preset::Paper).unwrap().abs() < TIES);
 }
 
 /// Half of the triangles lie in the dark; deleting them leaves the outside whole at the first level.
@@ -56,8 +60,7 @@ fn on_a_convex_body_visibility_changes_nothing() {
 fn a_hidden_half_costs_quadrics_alone_their_pictures() {
     let home = tempfile::tempdir().unwrap();
     let nested = shapes::nested_spheres(0.5, 3).mesh;
-    let request = request(home.path(), &[("nested", nested)]);
-    let report = study_zt(&ZtRequest { presets: vec![Preset::Best], ..request }, &Silent).unwrap();
+    let report = study_zt(&request(home.path(), &[("nested", nested)]), &Silent).unwrap();
     let nested = model(&report, "nested");
     let vg = nested.run(Preset::Best, Metric::Visibility).unwrap();
     assert_eq!(vg.hidden_deleted * 2, nested.findings.triangles);
@@ -111,12 +114,11 @@ fn numbers(report: &ZtReport) -> serde_json::Value {
 fn a_stopped_study_goes_on_with_the_cell_it_was_at() {
     let home = tempfile::tempdir().unwrap();
     let request = request(home.path(), &[("bowl", shapes::spherical_bowl(0.5, [24, 12]).mesh)]);
-    let request = ZtRequest { presets: vec![Preset::Paper], ..request };
-    let stopped = Counting { stop_at: Some("vg-paper"), ..Counting::default() };
+    let stopped = Counting { stop_at: Some("vg-best"), ..Counting::default() };
     assert!(matches!(study_zt(&request, &stopped), Err(Error::Cancelled)));
     let done: Vec<String> =
         plan_zt(&request).unwrap().iter().filter(|cell| cell.done).map(|cell| cell.cell.name()).collect();
-    assert_eq!(done, ["look-paper", "qb-paper"]);
+    assert_eq!(done, ["look-best", "qb-best"]);
 
     let continued = study_zt(&request, &Silent).unwrap();
     let elsewhere = ZtRequest { output: home.path().join("whole"), ..request.clone() };
@@ -136,18 +138,18 @@ fn a_cell_is_found_again_only_with_its_options_its_mesh_and_its_files() {
         plan_zt(request).unwrap().iter().filter(|cell| !cell.done).map(|cell| cell.cell.name()).collect()
     };
     assert!(left(&request).is_empty());
-    let of_levels = ["qb-paper", "vg-paper", "pictures-paper", "qb-best", "vg-best", "pictures-best"];
+    let of_levels = ["qb-best", "vg-best", "pictures-best", "viewer"];
     assert_eq!(left(&ZtRequest { levels: vec![0.4], ..request.clone() }), of_levels);
-    assert_eq!(left(&ZtRequest { resolution: Some(64), ..request.clone() }).len(), 8);
+    assert_eq!(left(&ZtRequest { resolution: Some(64), ..request.clone() }).len(), 5);
 
     fs::remove_file(request.output.join("ball-heat-best.png")).unwrap();
     assert_eq!(left(&request), ["look-best"]);
-    fs::write(request.output.join("cells/ball/qb-paper.json"), "{").unwrap();
-    assert_eq!(left(&request), ["qb-paper", "look-best"]);
+    fs::write(request.output.join("cells/ball/qb-best.json"), "{").unwrap();
+    assert_eq!(left(&request), ["look-best", "qb-best"]);
     let other = shapes::bumpy_sphere(2, 0.1);
-    io::write(&request.models[0].path, &other, &Attributes::default(), &WriteOptions { force: true, format: None })
-        .unwrap();
-    assert_eq!(left(&request).len(), 8);
+    let overwrite = WriteOptions { force: true, format: None };
+    io::write(&request.models[0].path, &other, &Attributes::default(), &overwrite).unwrap();
+    assert_eq!(left(&request).len(), 5);
 }
 
 #[test]
