@@ -1,8 +1,8 @@
-//! `study convergence`.
+//! `study convergence` and `study zt`.
 
 use std::fs;
 
-use crate::runner::{directory, json, names, run};
+use crate::runner::{SMALL, directory, json, names, run};
 
 #[test]
 fn convergence_is_written_whole_and_shows_both_weights() {
@@ -43,4 +43,61 @@ fn convergence_needs_rays_unless_another_reference_is_named() {
     let idle = run(home.path(), &[&study[..], &["--against", "fibonacci", "--samples", "64"]].concat());
     assert_eq!(idle.code, 2);
     assert!(idle.err.contains("casts no rays"), "{}", idle.err);
+}
+
+/// Everything that a study of one model leaves, but for its cells.
+const FILES_OF_ONE: [&str; 14] = [
+    "convergence.csv",
+    "cube-diagram-best.png",
+    "cube-errors-best.svg",
+    "cube-heat-best.png",
+    "cube-pictures-best-1.png",
+    "cube-qb-best-1.ply",
+    "cube-vg-best-1.ply",
+    "levels.csv",
+    "models.csv",
+    "outline.png",
+    "report.html",
+    "tables.md",
+    "zt.json",
+    "cells",
+];
+
+#[test]
+fn zt_plans_then_writes_tables_pictures_and_a_page() {
+    let home = directory();
+    let study =
+        ["study", "zt", "motor=cube.off", "-o", "zt", "--preset", "best", "--levels", "0.5", "--no-convergence"];
+    let study = [&study[..], &SMALL, &["--samples", "100", "--json"]].concat();
+    let plan = json(home.path(), &[&study[..], &["--dry-run"]].concat());
+    let cells: Vec<&str> =
+        plan["cells"].as_array().unwrap().iter().map(|cell| cell["cell"].as_str().unwrap()).collect();
+    assert_eq!(cells, ["look-best", "qb-best", "vg-best", "pictures-best", "viewer"]);
+    assert!(plan["estimated_seconds"].as_f64().unwrap() > 0.0);
+    assert!(!home.path().join("zt").exists(), "a plan writes nothing");
+
+    let object = json(home.path(), &study);
+    let model = &object["models"][0];
+    assert_eq!((&model["stand"]["stand"], &model["stand"]["paper"]["name"]), (&"stand_in".into(), &"Motor".into()));
+    assert_eq!(model["runs"][1]["levels"][0]["triangles"], 6);
+    let mut files = FILES_OF_ONE;
+    files.sort_unstable();
+    assert_eq!(names(&home.path().join("zt")), files);
+    let done = json(home.path(), &[&study[..], &["--dry-run"]].concat());
+    assert_eq!(done["estimated_seconds"], 0.0);
+    assert!(fs::read_to_string(home.path().join("zt/report.html")).unwrap().contains("Stand-in for Motor"));
+}
+
+#[test]
+fn zt_leaves_foreign_directories_alone_and_knows_the_papers_models() {
+    let home = directory();
+    let foreign = run(home.path(), &["study", "zt", "cube.off", "-o", "."]);
+    assert_eq!(foreign.code, 4);
+    assert!(foreign.err.contains("holds files that no study made"), "{}", foreign.err);
+    let unknown = run(home.path(), &["study", "zt", "engine=cube.off", "-o", "zt"]);
+    assert_eq!(unknown.code, 2);
+    assert!(unknown.err.contains("the paper has no model 'engine'; it has bunny"), "{}", unknown.err);
+    let alike = run(home.path(), &["study", "zt", "cube.off", "motor=cube.off", "-o", "zt"]);
+    assert_eq!(alike.code, 2);
+    assert!(!home.path().join("zt").exists());
 }
