@@ -92,7 +92,7 @@ pub enum Error {
     },
 
     /// The caller asked the work to stop.
-    #[error("stopped before the end, nothing was written")]
+    #[error("stopped before the end; no file is left half-written")]
     Cancelled,
 }
 

@@ -67,7 +67,7 @@ fn conclude_cancelled(console: &Console) -> u8 {
         }
         Some(Interruption::TimeLimit { seconds }) => {
             to_stderr(&format!(
-                "error: --time-limit {seconds}: the time is up, nothing was written; allow more, or try fewer --cameras \
+                "error: --time-limit {seconds}: the time is up; no file is left half-written; allow more, or try fewer --cameras \
                  or a smaller --resolution"
             ));
             LIMIT

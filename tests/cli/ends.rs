@@ -116,7 +116,7 @@ fn signals_end_the_work_and_leave_no_file() {
         let output = child.wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(code));
         assert!(start.elapsed() < Duration::from_secs(20), "it stops between two images");
-        assert!(String::from_utf8_lossy(&output.stderr).contains("nothing was written"));
+        assert!(String::from_utf8_lossy(&output.stderr).contains("no file is left half-written"));
         assert_eq!(names(home.path()), ["bumps.off", "cube.off"]);
     }
 }
