@@ -136,8 +136,8 @@ pub trait Observer: Progress {
         Ok(())
     }
 
-    /// A study comes to a cell of a model.
-    fn cell(&self, _model: &str, _cell: &str) {}
+    /// A study comes to a cell of a model; `found` if an earlier run has done it.
+    fn cell(&self, _model: &str, _cell: &str, _found: bool) {}
 
     /// `deleted` of `given` triangles are hidden and leave the mesh before it is simplified.
     ///

@@ -102,7 +102,7 @@ fn compare_puts_every_mesh_on_one_page() {
     assert_eq!(object["page"], "c.html");
     let html = fs::read_to_string(folder.path().join("c.html")).unwrap();
     assert_eq!(html.matches("<canvas").count(), 3);
-    assert!(html.contains("RMS distance") && !html.contains("<b>") && !html.contains("<img src=x"));
+    assert!(html.contains("Visible distance") && !html.contains("<b>") && !html.contains("<img src=x"));
 }
 
 #[test]

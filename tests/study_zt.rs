@@ -88,7 +88,7 @@ impl Progress for Counting {
 }
 
 impl Observer for Counting {
-    fn cell(&self, _model: &str, cell: &str) {
+    fn cell(&self, _model: &str, cell: &str, _found: bool) {
         cell.clone_into(&mut self.cell.lock().unwrap());
     }
 }

@@ -135,7 +135,7 @@ pub struct LookingFlags {
     /// Pixels along each image's side, 16 to 16384 [best: by triangles, paper: 480]
     #[arg(long, value_name = "W", value_parser = clap::value_parser!(u32).range(16..=16384))]
     pub resolution: Option<u32>,
-    /// The machine that looks [default: auto, which is raster]
+    /// The machine that looks [default: auto: raster, but embree for estimators that cast rays]
     #[arg(long, value_name = "NAME")]
     pub backend: Option<BackendName>,
     /// What is counted [best: coverage, paper: item-buffer]
@@ -278,7 +278,7 @@ names! {
 names! {
     /// `--backend`.
     BackendName => BackendKind {
-        // Always raster, so that the same input gives the same bytes everywhere
+        // raster, but embree for estimators that cast rays: the same everywhere
         Auto => BackendKind::Raster,
         // CPU rasteriser, always there
         Raster => BackendKind::Raster,
@@ -297,9 +297,9 @@ names! {
         Coverage => Estimator::Coverage,
         // The paper's: a camera sees a triangle or not
         ItemBuffer => Estimator::ItemBuffer,
-        // Rays from the triangle to the cameras; needs --backend embree
+        // Rays from the triangle to the cameras; by Embree
         Surface => Estimator::Surface,
-        // Rays spread by the cosine, with a standard error; needs --backend embree
+        // Rays spread by the cosine, with a standard error; by Embree
         Hemisphere => Estimator::Hemisphere,
     }
 }

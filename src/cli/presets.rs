@@ -1,12 +1,13 @@
 //! Turns flags into the library's options: the preset gives the defaults, an explicit flag overrides it.
 
+use outsight::backend::BackendKind;
 use outsight::error::{Error, Result};
 use outsight::pipeline::Metric;
 use outsight::simplify::{PlaneWeight, SimplifyOptions, Topology};
 use outsight::visibility::{Estimator, Hidden, MeasureOptions, RayOptions, Setting};
 
 use super::collapsing::{CollapseFlags, MetricName, RefitName};
-use super::flags::{GlobalFlags, LookingFlags, Preset, RayFlags};
+use super::flags::{BackendName, GlobalFlags, LookingFlags, Preset, RayFlags};
 
 /// p in V^p: both presets square, as the paper does.
 pub const VISIBILITY_POWER: f64 = 2.0;
@@ -51,17 +52,27 @@ fn looking_options(flags: &LookingFlags, global: &GlobalFlags) -> Result<Measure
         Preset::Best => MeasureOptions::default(),
         Preset::Paper => MeasureOptions::paper(),
     };
+    let estimator = flags.estimator.map_or(preset.estimator, Estimator::from);
     Ok(MeasureOptions {
         cameras: flags.cameras.cameras(preset.cameras)?,
         camera_weights: flags.camera_weights.map_or(preset.camera_weights, Into::into),
         resolution: flags.resolution.or(preset.resolution),
-        backend: flags.backend.map_or(preset.backend, Into::into),
-        estimator: flags.estimator.map_or(preset.estimator, Into::into),
+        backend: backend(flags.backend, estimator),
+        estimator,
         sides: flags.sides.map_or(preset.sides, Into::into),
         rays: ray_options(&flags.rays, preset.rays, global.seed),
         rescue: flags.rescue.map_or(preset.rescue, Into::into),
         memory_limit: global.memory_limit,
     })
+}
+
+/// The machine that looks: where none is named, who asks for rays asks for the one that casts them.
+fn backend(named: Option<BackendName>, estimator: Estimator) -> BackendKind {
+    match named {
+        None | Some(BackendName::Auto) if !estimator.draws() => BackendKind::Embree,
+        None => BackendKind::Raster,
+        Some(named) => named.into(),
+    }
 }
 
 /// Refuses a flag that belongs to estimators of which none looks.

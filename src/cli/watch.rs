@@ -138,8 +138,9 @@ impl Observer for Watch<'_> {
         Ok(())
     }
 
-    fn cell(&self, model: &str, cell: &str) {
-        self.console.note(&format!("{model}: {cell}"));
+    fn cell(&self, model: &str, cell: &str, found: bool) {
+        let found = if found { ", found" } else { "" };
+        self.console.note(&format!("{model}: {cell}{found}"));
     }
 
     fn hidden_deleted(&self, deleted: usize, given: usize) -> Result<()> {

@@ -159,7 +159,7 @@ pub fn compare_files(request: &CompareRequest, observer: &dyn Observer) -> Resul
             original: Exhibit { name: shown_name(&request.reference), mesh: &mesh, visibility },
             results: exhibits(request, &tests, &occluders, observer)?,
             errors: comparisons.iter().map(|comparison| comparison.image).collect(),
-            columns: distances(&report.tests),
+            columns: columns(&report.tests),
             measure: &request.measure,
             notes: vec![DISTANCES.to_owned()],
         };
@@ -233,16 +233,22 @@ impl GeometricReport {
 }
 
 /// What the page says below its table.
-const DISTANCES: &str =
-    "Distances between the surfaces are in % of the diagonal of the first mesh, hidden surface included.";
+const DISTANCES: &str = "SSIM: structural similarity of the pictures, 1 is alike. Distances between the surfaces are root mean \
+    squares in % of the diagonal of the first mesh: from its visible surface, from all of it weighted by visibility, and from all \
+    of it, hidden surface included.";
 
-/// The page's columns of distances.
-fn distances(tests: &[TestReport]) -> Vec<Column> {
-    let column = |head, of: fn(&GeometricReport) -> f64| {
-        let cells = tests.iter().map(|test| format!("{:.4} %", of(&test.geometric))).collect();
-        Column { head, cells }
+/// The page's columns besides pictures and outlines.
+fn columns(tests: &[TestReport]) -> Vec<Column> {
+    let column = |head, of: fn(&TestReport) -> Option<f64>, unit: &str| {
+        let cell = |test: &TestReport| of(test).map_or("–".to_owned(), |value| format!("{value:.4}{unit}"));
+        Column { head, cells: tests.iter().map(cell).collect() }
     };
-    vec![column("Mean distance", |g| g.mean), column("RMS distance", |g| g.rms), column("Largest", |g| g.max)]
+    vec![
+        column("SSIM", |t| Some(t.ssim), ""),
+        column("Visible distance", |t| t.geometric.visible.map(|d| d.rms), " %"),
+        column("Weighted distance", |t| t.geometric.weighted_rms, " %"),
+        column("Distance, all", |t| Some(t.geometric.forward.rms), " %"),
+    ]
 }
 
 /// Pictures of the reference and of every test, with what differs in red.

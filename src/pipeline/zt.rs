@@ -138,6 +138,8 @@ pub fn plan_zt(request: &ZtRequest) -> Result<Vec<PlannedCell>> {
 /// before an error stays.
 pub fn study_zt(request: &ZtRequest, observer: &dyn Observer) -> Result<ZtReport> {
     request.check()?;
+    // All files are there, before the first of them is worked on.
+    request.models.iter().try_for_each(|model| Store::of(model, request).map(drop))?;
     let study = |model| study_model(model, request, observer);
     let findings = request.models.iter().map(study).collect::<Result<_>>()?;
     Ok(ZtReport::of(&request.models, findings))
@@ -158,7 +160,7 @@ fn study_model(model: &ZtModel, request: &ZtRequest, observer: &dyn Observer) ->
     };
     for cell in Cell::all(request) {
         observer.check()?;
-        observer.cell(&model.name, &cell.name());
+        observer.cell(&model.name, &cell.name(), store.has(cell)?);
         match cell {
             Cell::Look(preset) => findings.looks.push(found(&store, cell, || bench.look(preset))?),
             Cell::Run(preset, metric) => findings.runs.push(found(&store, cell, || bench.run(preset, metric))?),

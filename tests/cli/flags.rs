@@ -2,14 +2,17 @@
 
 use std::fs;
 
-use crate::runner::{directory, run};
+use crate::runner::{directory, json, run};
 
 #[test]
 fn flags_of_rays_say_what_they_need() {
     let home = directory();
     let cases: [(&[&str], &str); 5] = [
-        (&["--estimator", "surface"], "surface needs rays, which backend raster does not cast; add --backend embree"),
-        (&["--estimator", "hemisphere", "--backend", "auto"], "add --backend embree"),
+        (
+            &["--estimator", "surface", "--backend", "raster"],
+            "surface needs rays, which backend raster does not cast; add --backend embree",
+        ),
+        (&["--estimator", "hemisphere", "--backend", "raster"], "add --backend embree"),
         (&["--samples", "64"], "--samples: belongs to the estimator hemisphere, and what looks is coverage"),
         (&["--points", "0"], "--points"),
         (&["--target-error", "2"], "write a standard error above 0 and below 1"),
@@ -99,4 +102,14 @@ fn numbers_in_messages_are_as_short_as_they_can_be() {
     // What the user wrote is quoted as it is, and once.
     let ended = run(home.path(), &["simplify", "cube.off", "-o", "x.ply", "-r", &nines]);
     assert!(ended.err.lines().all(|line| line.len() < LINE + nines.len()), "{}", ended.err);
+}
+
+#[test]
+#[cfg(feature = "embree")]
+fn who_asks_for_rays_need_not_name_who_casts_them() {
+    let home = directory();
+    for chosen in [&["--estimator", "surface"][..], &["--estimator", "surface", "--backend", "auto"]] {
+        let object = json(home.path(), &[&["measure", "cube.off", "--cameras", "18", "--json"], chosen].concat());
+        assert_eq!(object["backend"], "embree");
+    }
 }

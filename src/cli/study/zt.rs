@@ -32,7 +32,7 @@ pub struct Flags {
     /// Whose options: the paper's, the best, or each in turn
     #[arg(long, value_name = "NAME", default_value = "both")]
     preset: Presets,
-    /// Shares of the triangles at which simplifiers are compared, descending [default: 1/2, 1/4, … 1/128]
+    /// Shares of the triangles at which simplifiers are compared, descending [default: 0.5, 0.25, … 0.0078125]
     #[arg(long, value_name = "R,R,…", value_delimiter = ',', value_parser = values::ratio)]
     levels: Vec<f64>,
     /// Samples on each mesh for the geometric error

@@ -206,8 +206,7 @@ impl Show<'_> {
 
 const SUBTITLE: &str = "Visibility is the share of directions from which a piece of surface is seen from outside, each counted \
     by its cosine: 1 on a ball, 0 in a sealed inside.";
-const VIEWER: &str = "Each triangle has the colour of its visibility, darker where it turns away from you. Look inside: what is \
-    dark blue costs triangles that nobody sees.";
+const VIEWER: &str = "Each triangle has the colour of its visibility, darker where it turns away from you.";
 const HISTOGRAM: &str = "Share of the surface by its visibility. The first bar is what is hidden, or nearly.";
 const HEAT: &str = "The same colours from three sides.";
 const PICTURES: &str = "Each result beside what differs from the original: white where the pictures are equal, full red from 64 \

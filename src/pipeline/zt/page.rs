@@ -5,9 +5,8 @@ use std::path::Path;
 
 use super::ZtRequest;
 use super::plots::Plot;
-use super::report::{ModelReport, ZtReport};
+use super::report::{ModelReport, PAIRS, ZtReport};
 use crate::error::{Error, Result};
-use crate::pipeline::Preset;
 use crate::pipeline::compare::views_around;
 use crate::pipeline::page::{legend, section};
 use crate::report::page::{Content, FIGURES_BYTES, Fact, Figure, Figures, Image, Page, Section, Table, Viewer};
@@ -50,12 +49,12 @@ impl ZtReport {
     fn facts(&self) -> Vec<Fact> {
         let fact = |name: &str, value: String, note: String| Fact { name: name.to_owned(), value, note };
         let mut facts = vec![fact("Models", self.models.len().to_string(), String::new())];
-        for preset in self.presets() {
-            let gains: Vec<f64> = self.models.iter().filter_map(|m| m.less_error(preset, Preset::Paper)).collect();
+        for (visibility, quadric) in PAIRS {
+            let gains: Vec<f64> = self.models.iter().filter_map(|m| m.less_error(visibility, quadric)).collect();
             if !gains.is_empty() {
                 let mean = gains.iter().sum::<f64>() / gains.len() as f64;
-                let note = format!("less image error than QB paper, mean of {} models", gains.len());
-                facts.push(fact(&format!("VG {}", preset.name()), format!("{mean:.1} %"), note));
+                let note = format!("less image error than QB {}, mean over the models", quadric.name());
+                facts.push(fact(&format!("VG {}", visibility.name()), format!("{mean:.1} %"), note));
             }
         }
         for correlation in &self.correlations {

@@ -18,9 +18,10 @@ pub(super) struct Plot {
 }
 
 impl ZtReport {
-    /// How V(M) goes with the improvement over QB `paper`, a group of points per preset; `None` for a single model.
+    /// How V(M) goes with the improvement over QB `paper`, a group of points per preset; `None` where fewer than two models
+    /// have both.
     pub(super) fn correlation_plot(&self) -> io::Result<Option<Plot>> {
-        if self.models.len() < 2 {
+        if self.correlations.iter().all(|correlation| correlation.models < 2) {
             return Ok(None);
         }
         let group = |preset: Preset| {

@@ -96,7 +96,7 @@ impl ModelReport {
 }
 
 /// VG and QB: the paper's both, the best against the paper's QB, and the best both.
-const PAIRS: [(Preset, Preset); 3] =
+pub(super) const PAIRS: [(Preset, Preset); 3] =
     [(Preset::Paper, Preset::Paper), (Preset::Best, Preset::Paper), (Preset::Best, Preset::Best)];
 
 fn improvement(runs: &[RunFinding], (visibility, quadric): (Preset, Preset)) -> Option<Improvement> {

@@ -19,6 +19,9 @@ pub enum Stand {
 /// circulation has 0.03 % more triangles than the paper prints.
 const SAME_COUNT: f64 = 1e-3;
 
+/// What a count cannot say.
+const FILE: &str = "whether it is the same file, its V(M) beside the paper's must tell";
+
 impl Stand {
     /// What a model of `triangles` triangles is that goes by the name of `model`.
     #[must_use]
@@ -43,11 +46,14 @@ impl Stand {
         let ours = thousands(triangles as u64);
         match self {
             Self::Original(model) if triangles == model.triangles => {
-                format!("taken for the paper's own {}: {ours} triangles, as printed", model.name)
+                format!("has the name and the count of the paper's {}: {ours} triangles; {FILE}", model.name)
             }
             Self::Original(model) => {
                 let printed = thousands(model.triangles as u64);
-                format!("taken for the paper's own {}: {ours} triangles, {printed} printed", model.name)
+                format!(
+                    "has the name and nearly the count of the paper's {}: {ours} triangles, {printed} printed; {FILE}",
+                    model.name
+                )
             }
             Self::StandIn(model) => {
                 let printed = thousands(model.triangles as u64);

@@ -2,14 +2,15 @@ use serde::Serialize;
 
 use crate::camera::{CameraPattern, CameraWeights, Cameras, Window};
 use crate::visibility::agreement::{Agreement, Comparing, Measurement};
-use crate::visibility::{Estimator, Shapes};
+use crate::visibility::{Estimator, Shapes, surface_mean};
 
 /// How far two measurements may disagree; `None` where nothing is known to hold.
 ///
 /// *The same estimator on two machines* takes the same samples, so that only edge rules and rounding may differ.
 /// *`coverage` against `hemisphere`* may differ by the quadrature of the cameras (q, measured on planes half blocked and
 /// on cones of sky) and by the noise of counting C pixels a triangle (0.8/√C: the mean of |x| for a normal x of standard
-/// deviation 1 is √(2/π)); known for 258 area-weighted cameras and more. *All other pairs* measure different things:
+/// deviation 1 is √(2/π)) and of casting rays (0.8 σ, with the standard errors σ that `hemisphere` found); known for 258
+/// area-weighted cameras and more. *All other pairs* measure different things:
 /// `item-buffer` calls a triangle seen that is seen in part, `surface` looks from a few points only. How far that carries
 /// depends on the mesh, so there is no limit.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
@@ -54,13 +55,13 @@ impl Limits {
             return if by_hemisphere(a) { SAME_SAMPLES.without_table() } else { SAME_SAMPLES };
         }
         let coverage = [a, b].into_iter().find(by_coverage);
-        match coverage.filter(|_| by_hemisphere(a) || by_hemisphere(b)) {
-            Some(coverage) => Self::of_quadrature(coverage, comparing),
+        match coverage.zip([a, b].into_iter().find(|m| by_hemisphere(m))) {
+            Some((coverage, rays)) => Self::of_quadrature(coverage, rays, comparing),
             None => Self::default(),
         }
     }
 
-    fn of_quadrature(coverage: &Measurement<'_>, comparing: Comparing<'_>) -> Self {
+    fn of_quadrature(coverage: &Measurement<'_>, rays: &Measurement<'_>, comparing: Comparing<'_>) -> Self {
         let cameras = comparing.cameras.count();
         let known = QUADRATURE.iter().find(|(least, ..)| cameras >= *least);
         let Cameras { pattern, hemisphere, .. } = &comparing.options.cameras;
@@ -68,7 +69,7 @@ impl Limits {
             && hemisphere.is_none()
             && comparing.options.camera_weights == CameraWeights::Area;
         let Some((_, q, of_mesh)) = known.filter(|_| is_even) else { return Self::default() };
-        let noise = MEAN_OF_NOISE / mean_count(coverage, cameras).sqrt();
+        let noise = MEAN_OF_NOISE * (1.0 / mean_count(coverage, cameras).sqrt() + mean_standard_error(rays));
         let sharp = coverage.visibility.resolution() >= ENOUGH_PIXELS;
         Self { mean_abs_dv: Some(q + noise), dvm: sharp.then_some(*of_mesh), ..Self::default() }
     }
@@ -100,4 +101,10 @@ fn mean_count(coverage: &Measurement<'_>, cameras: usize) -> f64 {
     let mean_area = shapes.areas.iter().sum::<f64>() / shapes.areas.len() as f64;
     let pixel = Window::around_sphere(coverage.visibility.resolution()).pixel_size();
     (cameras as f64 * mean_area * coverage.visibility.of_mesh() / (4.0 * pixel * pixel)).max(1.0)
+}
+
+/// σ of a triangle's V, mean over the surface; 0 where the estimator tells none.
+fn mean_standard_error(rays: &Measurement<'_>) -> f64 {
+    let error = rays.visibility.details().standard_error.as_ref();
+    error.map_or(0.0, |error| surface_mean(rays.subject, |t| error.per_triangle[t]))
 }
