@@ -57,10 +57,7 @@ fn flags_that_the_estimator_cannot_use_are_refused_with_who_can() {
         assert_eq!(ended(&simplify, &[&rays[..], &["--hidden", "delete"]].concat()).code, 0);
         assert_eq!(ended(&simplify, &[&rays[..], &["--hidden", "keep"]].concat()).code, 2);
     }
-    let half = crate::runner::json(
-        home.path(),
-        &[&["measure", "cube.off", "--json", "--hemisphere", "+y"], &hemisphere[..]].concat(),
-    );
+    let half = json(home.path(), &[&["measure", "cube.off", "--json", "--hemisphere", "+y"], &hemisphere[..]].concat());
     assert!((half["visibility"]["mesh"].as_f64().unwrap() - 0.5).abs() < 0.05, "the side means something to rays");
 }
 
