@@ -63,7 +63,7 @@ macro_rules! suite {
 suite!(coverage_on_raster, item_buffer_on_raster, surface_on_brute, hemisphere_on_brute);
 
 #[cfg(feature = "embree")]
-suite!(coverage_on_embree, surface_on_embree, hemisphere_on_embree);
+suite!(coverage_on_embree, item_buffer_on_embree, surface_on_embree, hemisphere_on_embree);
 
 /// What a smooth shape's answer may differ from its mesh's, where that has less area.
 fn polygonal(mesh_area: f64, smooth_area: f64) -> f64 {
@@ -106,7 +106,8 @@ fn all_cameras(pair: &Pair) {
     // The strict rule loses slivers beside sharp edges.
     let pair = &pair.rescuing(DepthRescue::Plain);
     let sphere = shapes::icosphere(pair.level(4));
-    for cameras in [6, 18, 66, 258, 1026] {
+    // The dear ones stand where pairs that are short of time leave them out.
+    for cameras in pair.some(&[6, 258, 18, 1026, 66]) {
         for weights in [CameraWeights::Area, CameraWeights::Equal] {
             let visibility = pair.measure(&sphere, cameras, weights);
             assert_abs_diff_eq!(visibility.of_mesh(), 1.0, epsilon = pair.certain_if_coarse);
@@ -238,6 +239,7 @@ fn parallel_rectangles(x: f64, y: f64) -> f64 {
 
 /// T9 is an endless slot, which no mesh is: a long closed one has an exact answer too, near the endless one's.
 fn slots(pair: &Pair) {
+    let pair = &pair.without_rescue_at_folds();
     let length = pair.length(20.0);
     for (depth, endless) in [(1.0, 0.414_214), (2.0, 0.236_068)] {
         let bottom = parallel_rectangles(1.0 / depth, length / depth);
@@ -254,16 +256,18 @@ fn slots(pair: &Pair) {
 }
 
 fn open_boxes(pair: &Pair) {
+    pair.see(&shapes::open_box_solid(0.1, pair.cells(16))).check("bottom", 0.199_825, 0.0);
+    let pair = &pair.without_rescue_at_folds();
     assert_abs_diff_eq!(parallel_rectangles(1.0, 1.0), 0.199_825, epsilon = 1e-6);
     let shape = shapes::open_box(pair.cells(16));
     let seen = pair.see(&shape);
     seen.check("bottom", 0.199_825, 0.0);
     seen.check("walls", 0.200_044, 0.0);
     assert_abs_diff_eq!(seen.mean_of_all(), 0.2, epsilon = seen.tolerance());
-    pair.see(&shapes::open_box_solid(0.1, pair.cells(16))).check("bottom", 0.199_825, 0.0);
 }
 
 fn cluttered_cavities(pair: &Pair) {
+    let pair = &pair.without_rescue_at_folds();
     for (seed, count) in [(1, 0), (2, 5), (3, 20), (4, 60)] {
         let shape = shapes::cluttered_open_box(seed, pair.pieces(count), pair.cells(8));
         let seen = pair.see(&shape);
