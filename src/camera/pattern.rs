@@ -113,8 +113,27 @@ impl CameraSphere {
         };
         let (directions, shares): (Vec<DVec3>, Vec<f64>) =
             cameras.iter().enumerate().map(unit).collect::<Result<Vec<_>>>()?.into_iter().unzip();
+        if weights == CameraWeights::Area {
+            check_spread(&shares)?;
+        }
         Ok(weighted(directions, &shares, weights))
     }
+}
+
+/// The heaviest listed camera may count this many times as much as the lightest: with integers of mean 4096 and a floor under
+/// the sums of cosines, what only lighter ones see would come out wrong.
+const MAX_SPREAD: f64 = 100.0;
+
+fn check_spread(shares: &[f64]) -> Result<()> {
+    let (least, most) = shares.iter().fold((f64::INFINITY, 0.0_f64), |(l, m), &share| (l.min(share), m.max(share)));
+    if most <= MAX_SPREAD * least {
+        return Ok(());
+    }
+    let message = format!(
+        "the weights go from {least:e} to {most:e}; the largest may be {MAX_SPREAD} times the smallest, or what only light \
+         cameras see is lost; leave the lightest out, or let all count alike with --camera-weights equal"
+    );
+    Err(Error::Option { name: "--camera-file", message })
 }
 
 /// The unit vector of height `z` at an angle around the z axis.
@@ -127,7 +146,7 @@ fn at(z: f64, angle: f64) -> DVec3 {
 fn weighted(directions: Vec<DVec3>, shares: &[f64], weights: CameraWeights) -> CameraSphere {
     let mean = shares.iter().sum::<f64>() / shares.len() as f64;
     let weight = |share: f64| match weights {
-        // A camera that is listed counts, however little.
+        // A camera that is listed counts, however many and heavy the others.
         CameraWeights::Area => (libm::round(MEAN_WEIGHT * (share / mean)) as u64).max(1),
         CameraWeights::Equal => 1,
     };

@@ -110,3 +110,17 @@ fn who_asks_for_rays_need_not_name_who_casts_them() {
         assert_eq!(object["backend"], "embree");
     }
 }
+
+/// Beyond a factor of 100 `coverage` would say 0.70 of a ball that every camera sees rightly at 0.875.
+#[test]
+fn cameras_of_hopelessly_unequal_weights_are_refused() {
+    let home = directory();
+    fs::write(home.path().join("unequal.txt"), "1 0 0 1e5\n0 1 0 1\n0 0 1 1\n").unwrap();
+    let ended = run(home.path(), &["measure", "cube.off", "--camera-file", "unequal.txt"]);
+    assert_eq!(ended.code, 2);
+    assert!(
+        ended.err.contains("the weights go from 1e0 to 1e5; the largest may be 100 times the smallest"),
+        "{}",
+        ended.err
+    );
+}

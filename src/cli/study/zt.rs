@@ -84,7 +84,7 @@ struct Object<'a> {
 impl Flags {
     fn request(&self, console: &Console) -> Result<ZtRequest> {
         Ok(ZtRequest {
-            models: self.models.iter().map(|argument| model(argument)).collect::<Result<_>>()?,
+            models: self.models.iter().map(model).collect::<Result<_>>()?,
             read: self.reading.options(&console.global),
             presets: match self.preset {
                 Presets::Paper => vec![Preset::Paper],

@@ -96,7 +96,11 @@ mod tests {
         let expected = "stand-in for Motor: 110,336 triangles in place of 140,113; another model, so only the tendency \
                         compares";
         assert_eq!(sentence, expected);
-        assert!(of("buddha", 1_087_716).sentence(1_087_716).ends_with("1,087,716 triangles, 1,087,416 printed"));
-        assert!(of("bunny", 69_451).sentence(69_451).ends_with("69,451 triangles, as printed"));
+        assert!(of("buddha", 1_087_716).sentence(1_087_716).contains("1,087,716 triangles, 1,087,416 printed"));
+        assert!(
+            of("bunny", 69_451)
+                .sentence(69_451)
+                .contains("the name and the count of the paper's Bunny: 69,451 triangles")
+        );
     }
 }
