@@ -141,7 +141,7 @@ pub struct LookingFlags {
     /// What is counted [best: coverage, paper: item-buffer]
     #[arg(long, value_name = "NAME")]
     pub estimator: Option<EstimatorName>,
-    /// Visibility of a triangle's front, better side, or both added [best: better, paper: one]
+    /// Visibility of a triangle's front, better side, or both added [best: better; paper and item-buffer: one]
     #[arg(long, value_name = "WHICH")]
     pub sides: Option<SidesName>,
     /// item-buffer: when a triangle without a pixel counts as seen, by its depth [default: plain]

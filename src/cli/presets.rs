@@ -4,7 +4,7 @@ use outsight::backend::BackendKind;
 use outsight::error::{Error, Result};
 use outsight::pipeline::Metric;
 use outsight::simplify::{PlaneWeight, SimplifyOptions, Topology};
-use outsight::visibility::{Estimator, Hidden, MeasureOptions, RayOptions, Setting};
+use outsight::visibility::{Estimator, Hidden, MeasureOptions, RayOptions, Setting, Sides};
 
 use super::collapsing::{CollapseFlags, MetricName, RefitName};
 use super::flags::{BackendName, GlobalFlags, LookingFlags, Preset, RayFlags};
@@ -53,13 +53,15 @@ fn looking_options(flags: &LookingFlags, global: &GlobalFlags) -> Result<Measure
         Preset::Paper => MeasureOptions::paper(),
     };
     let estimator = flags.estimator.map_or(preset.estimator, Estimator::from);
+    // The paper looks at fronts. Depth rescue would make backs along the outline of a solid seen, which nobody can see.
+    let sides = if estimator == Estimator::ItemBuffer { Sides::One } else { preset.sides };
     Ok(MeasureOptions {
         cameras: flags.cameras.cameras(preset.cameras)?,
         camera_weights: flags.camera_weights.map_or(preset.camera_weights, Into::into),
         resolution: flags.resolution.or(preset.resolution),
         backend: backend(flags.backend, estimator),
         estimator,
-        sides: flags.sides.map_or(preset.sides, Into::into),
+        sides: flags.sides.map_or(sides, Into::into),
         rays: ray_options(&flags.rays, preset.rays, global.seed),
         rescue: flags.rescue.map_or(preset.rescue, Into::into),
         memory_limit: global.memory_limit,

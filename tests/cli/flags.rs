@@ -124,3 +124,12 @@ fn cameras_of_hopelessly_unequal_weights_are_refused() {
         ended.err
     );
 }
+
+/// Nobody sees a cube from inside; depth rescue would say otherwise of the backs along its outline.
+#[test]
+fn the_item_buffer_looks_at_fronts_unless_told() {
+    let home = directory();
+    let look = ["measure", "cube.off", "--estimator", "item-buffer", "--cameras", "18", "--resolution", "64", "--json"];
+    assert_eq!(json(home.path(), &look)["sides"], "one");
+    assert_eq!(json(home.path(), &[&look[..], &["--sides", "sum"]].concat())["sides"], "sum");
+}
