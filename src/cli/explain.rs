@@ -65,6 +65,10 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
     console.result(&object, &text(&report, if flags.all { usize::MAX } else { SHORT }), true)
 }
 
+/// Names of the flags that [`check_looking`] refuses.
+pub const REFUSED: [&str; 9] =
+    ["backend", "estimator", "sides", "rescue", "points", "partly_seen", "samples", "target_error", "target_error_p99"];
+
 /// Flags about who counts what would change nothing here.
 fn check_looking(looking: &LookingFlags) -> outsight::Result<()> {
     let given = [

@@ -45,7 +45,7 @@ pub struct GlobalFlags {
     /// Refuse work that needs more memory than this, as in 2G or 500M
     #[arg(long, global = true, value_name = "SIZE", value_parser = values::bytes)]
     pub memory_limit: Option<u64>,
-    /// Give up after this many seconds, and write nothing
+    /// Give up after this many seconds; what is whole by then stays
     #[arg(long, global = true, value_name = "SECONDS", value_parser = values::seconds)]
     pub time_limit: Option<Duration>,
     /// Seed of everything random

@@ -66,7 +66,7 @@ enum Command {
     #[command(after_help = help::MEASURE)]
     Measure(measure::Flags),
     /// Say which cameras see a triangle, and what hides it from the others
-    #[command(after_help = help::EXPLAIN)]
+    #[command(after_help = help::EXPLAIN, mut_args(|a| hidden_if(a, &explain::REFUSED)))]
     Explain(explain::Flags),
     /// Put the same question to several backends and estimators: do they agree?
     #[command(after_help = help::VERIFY, mut_arg("backend", |a| a.hide(true)), mut_arg("estimator", |a| a.hide(true)))]
@@ -94,6 +94,12 @@ enum Command {
     /// Print the manual page
     #[command(after_help = help::MAN)]
     Man(man::Flags),
+}
+
+/// A flag that a command always refuses, and shares with others that do not, stays out of its help.
+fn hidden_if(flag: clap::Arg, refused: &[&str]) -> clap::Arg {
+    let hidden = refused.contains(&flag.get_id().as_str());
+    if hidden { flag.hide(true) } else { flag }
 }
 
 /// Runs the program on the process's arguments and says how it ends.

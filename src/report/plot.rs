@@ -182,7 +182,8 @@ fn visible(curve: &Curve) -> Vec<(f64, f64)> {
 /// A number without the digits that only rounding gave it: `0.3`, not `0.30000000000000004`.
 fn plain(number: f64) -> String {
     let digits = format!("{number:.9}");
-    digits.trim_end_matches('0').trim_end_matches('.').to_owned()
+    let digits = digits.trim_end_matches('0').trim_end_matches('.');
+    if digits == "-0" { "0".to_owned() } else { digits.to_owned() }
 }
 
 fn draw_curve<'a, B: DrawingBackend + 'a>(chart: &mut Chart<'a, B>, curve: &Curve, colour: RGBColor) -> Drawn<B> {
@@ -219,6 +220,11 @@ mod tests {
         }
         // Two points can be shown, and one disc stands in the legend.
         assert_eq!(svg.matches("<circle").count(), 3);
+    }
+
+    #[test]
+    fn numbers_lose_what_only_rounding_gave_them() {
+        assert_eq!([0.1 + 0.2, -1e-17, -2.5, 100.0].map(plain), ["0.3", "0", "-2.5", "100"]);
     }
 
     #[test]
