@@ -7,7 +7,7 @@
 //! ```
 //!
 //! [`measure_file`], [`explain_file`], [`verify_file`], [`study_convergence`], [`compare_files`] and [`render_file`] leave
-//! it early or look at its two ends.
+//! it early or look at its two ends; [`study_zt`] walks it for many meshes and says what came of it.
 
 mod compare;
 mod convergence;
@@ -37,7 +37,7 @@ pub use measure::{
 };
 pub use observation::cache_is_file;
 pub use page::PageRequest;
-pub use preset::Preset;
+pub use preset::{Preset, VISIBILITY_POWER};
 pub use render::{RenderRequest, Style, render_file};
 pub use side_by_side::{ColumnOrder, Portrait, SideBySide};
 pub use simplify::{

@@ -174,7 +174,7 @@ fn simplified(input: &Path, output: &Path, metric: Metric, looking: &MeasureOpti
         measure: looking.clone(),
         occluders: Vec::new(),
         hidden: if metric == Metric::Quadric { Hidden::Keep } else { Hidden::Delete },
-        visibility_power: presets::VISIBILITY_POWER,
+        visibility_power: pipeline::VISIBILITY_POWER,
         simplify: SimplifyOptions::default(),
         levels: vec![LevelRequest { targets: vec![Target::Ratio(RATIO)], output: output.to_owned() }],
         format: None,

@@ -9,7 +9,7 @@ use outsight::backend::BackendKind;
 use outsight::camera::CameraWeights;
 use outsight::error::{Error, Result};
 use outsight::io::{Format, ReadOptions};
-use outsight::pipeline::PageRequest;
+use outsight::pipeline::{self, PageRequest};
 use outsight::report::colour::ColourMap;
 use outsight::visibility::{DepthRescue, Estimator, PartlySeen, Sides};
 
@@ -230,6 +230,15 @@ pub enum Preset {
     Best,
     // Nearest to the text of Zhang & Turk 2002.
     Paper,
+}
+
+impl From<Preset> for pipeline::Preset {
+    fn from(preset: Preset) -> Self {
+        match preset {
+            Preset::Best => Self::Best,
+            Preset::Paper => Self::Paper,
+        }
+    }
 }
 
 /// Declares an enum of flag values, each standing for a value of the library.

@@ -2,15 +2,12 @@
 
 use outsight::backend::BackendKind;
 use outsight::error::{Error, Result};
-use outsight::pipeline::Metric;
+use outsight::pipeline::{self, Metric, VISIBILITY_POWER};
 use outsight::simplify::{PlaneWeight, SimplifyOptions, Topology};
 use outsight::visibility::{Estimator, Hidden, MeasureOptions, RayOptions, Setting, Sides};
 
 use super::collapsing::{CollapseFlags, MetricName, RefitName};
 use super::flags::{BackendName, GlobalFlags, LookingFlags, Preset, RayFlags};
-
-/// p in V^p: both presets square, as the paper does.
-pub const VISIBILITY_POWER: f64 = 2.0;
 
 /// How visibility is measured under these flags.
 ///
@@ -48,10 +45,7 @@ pub fn verify_options(flags: &LookingFlags, global: &GlobalFlags, settings: &[Se
 }
 
 fn looking_options(flags: &LookingFlags, global: &GlobalFlags) -> Result<MeasureOptions> {
-    let preset = match flags.preset {
-        Preset::Best => MeasureOptions::default(),
-        Preset::Paper => MeasureOptions::paper(),
-    };
+    let preset = pipeline::Preset::from(flags.preset).measure();
     let estimator = flags.estimator.map_or(preset.estimator, Estimator::from);
     // The paper looks at fronts. Depth rescue would make backs along the outline of a solid seen, which nobody can see.
     let sides = if estimator == Estimator::ItemBuffer { Sides::One } else { preset.sides };
@@ -156,10 +150,7 @@ pub fn simplify_options(flags: &CollapseFlags, preset: Preset) -> Result<Simplif
         let message = "--refit guarded is not in this version of Outsight; leave it out or use --refit none".to_owned();
         return Err(Error::Unavailable { message });
     }
-    let base = match preset {
-        Preset::Best => SimplifyOptions::default(),
-        Preset::Paper => SimplifyOptions::paper(),
-    };
+    let base = pipeline::Preset::from(preset).simplify();
     Ok(SimplifyOptions {
         plane_weight: flags.weights_by.map_or(base.plane_weight, PlaneWeight::from),
         topology: flags.topology.map_or(base.topology, Topology::from),

@@ -3,6 +3,9 @@ use serde::{Deserialize, Serialize};
 use crate::simplify::SimplifyOptions;
 use crate::visibility::{Hidden, MeasureOptions};
 
+/// p in V^p: both presets square, as the paper does.
+pub const VISIBILITY_POWER: f64 = 2.0;
+
 /// Defaults for looking and for simplifying that belong together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

@@ -23,7 +23,7 @@ use crate::pipeline::page::{Exhibit, models};
 use crate::pipeline::render::heat_picture;
 use crate::pipeline::{
     Clock, ColumnOrder, ConvergenceRequest, IndependentReference, MeshConvergence, Metric, Observer, Portrait, Preset,
-    Reduction, SideBySide, simplify_seen,
+    Reduction, SideBySide, VISIBILITY_POWER, simplify_seen,
 };
 use crate::report::colour::ColourMap;
 use crate::report::legend::with_legend;
@@ -107,7 +107,7 @@ impl<'a> Bench<'a> {
         let counts = self.request.counts(self.model, self.triangles());
         let targets = counts.iter().map(|&(_, count)| Target::Triangles(count)).collect();
         let options = preset.simplify().with_targets(targets);
-        let reduction = Reduction { hidden: preset.hidden(), visibility_power: 2.0, options };
+        let reduction = Reduction { hidden: preset.hidden(), visibility_power: VISIBILITY_POWER, options };
         let mut clock = Clock::start();
         let simplified = simplify_seen(self.mesh().clone(), look, &reduction, self.observer)?;
         let seconds = clock.lap();
