@@ -9,7 +9,7 @@ mod common;
 use outsight::eval::image_errors;
 use outsight::mesh::TriMesh;
 use outsight::progress::Silent;
-use outsight::simplify::{SimplifyOptions, Target, simplify};
+use outsight::simplify::{PlaneWeight, SimplifyOptions, Target, simplify};
 use outsight::visibility::{Hidden, Look, MeasureOptions, importance, look};
 
 fn main() {
@@ -17,19 +17,27 @@ fn main() {
     println!("--- | ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---:");
     for path in common::models() {
         let mesh = common::load(&path);
-        let paper = look(&mesh, &MeasureOptions::paper(), Hidden::Collapse, &Silent).unwrap();
+        let paper = look(&mesh, &MeasureOptions::paper(), Hidden::Delete, &Silent).unwrap();
         let best = look(&mesh, &MeasureOptions::default(), Hidden::Delete, &Silent).unwrap();
         let row = Row { model: common::name(&path), v: best.visibility.of_mesh() };
-        let qb = errors(&mesh, None, &SimplifyOptions::paper());
+        let printed = SimplifyOptions::paper();
+        let qb = errors(&mesh, None, &printed);
         row.print("QB, preset paper", &qb, &qb);
-        row.print("VG, preset paper", &errors(&mesh, Some((&paper, Hidden::Collapse)), &SimplifyOptions::paper()), &qb);
-        row.print("QB, area + boundary", &errors(&mesh, None, &SimplifyOptions::default()), &qb);
-        row.print(
-            "VG, hidden kept in",
-            &errors(&mesh, Some((&best, Hidden::Collapse)), &SimplifyOptions::default()),
-            &qb,
-        );
-        row.print("VG, preset best", &errors(&mesh, Some((&best, Hidden::Delete)), &SimplifyOptions::default()), &qb);
+        // The printed method, with one option of the other preset at a time: which of them it lacks where it loses.
+        let area = SimplifyOptions { plane_weight: PlaneWeight::Area, ..printed.clone() };
+        let borders = SimplifyOptions { boundary: SimplifyOptions::default().boundary, ..printed.clone() };
+        for (variant, hidden, options) in [
+            ("VG, preset paper", Hidden::Collapse, &printed),
+            ("VG, paper + hidden deleted", Hidden::Delete, &printed),
+            ("VG, paper + borders held", Hidden::Collapse, &borders),
+            ("VG, paper + planes by area", Hidden::Collapse, &area),
+        ] {
+            row.print(variant, &errors(&mesh, Some((&paper, hidden)), options), &qb);
+        }
+        let options = SimplifyOptions::default();
+        row.print("QB, area + borders", &errors(&mesh, None, &options), &qb);
+        row.print("VG, hidden kept in", &errors(&mesh, Some((&best, Hidden::Collapse)), &options), &qb);
+        row.print("VG, preset best", &errors(&mesh, Some((&best, Hidden::Delete)), &options), &qb);
     }
 }
 
