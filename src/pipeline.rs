@@ -46,9 +46,9 @@ pub use simplify::{
 };
 pub use verify::{PairReport, VerifyReport, VerifyRequest, verify_file};
 pub use zt::{
-    Cell, Correlation, Improvement, LEVELS, LevelErrors, LevelFinding, LookFinding, ModelFindings, ModelReport,
-    PicturesFinding, PlannedCell, RunFinding, SheetFinding, ViewerFinding, ZtModel, ZtReport, ZtRequest, plan_zt,
-    study_zt,
+    Cell, Correlation, EqualError, Improvement, ImprovementSummary, LEVELS, LevelErrors, LevelFinding, Levels,
+    LookFinding, MeanImprovement, ModelFindings, ModelReport, PicturesFinding, PlannedCell, PresetPair, QuadricCount,
+    RunFinding, SheetFinding, ViewerFinding, ZtModel, ZtReport, ZtRequest, plan_zt, study_zt,
 };
 
 use std::path::Path;

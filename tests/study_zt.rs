@@ -6,10 +6,14 @@ use std::fs;
 use std::path::Path;
 use std::sync::Mutex;
 
+use glam::{DAffine3, DVec3};
 use outsight::Error;
 use outsight::io::{self, Attributes, ReadOptions, WriteOptions};
 use outsight::mesh::{TriMesh, shapes};
-use outsight::pipeline::{Metric, ModelReport, Observer, Preset, ZtModel, ZtReport, ZtRequest, plan_zt, study_zt};
+use outsight::pipeline::{
+    Cell, Levels, Metric, ModelReport, Observer, Preset, QuadricCount, RunFinding, ZtModel, ZtReport, ZtRequest,
+    plan_zt, study_zt,
+};
 use outsight::progress::{Progress, Silent};
 
 /// Models of the study, few cameras, small pictures.
@@ -40,6 +44,9 @@ fn model<'a>(report: &'a ZtReport, name: &str) -> &'a ModelReport {
     report.models.iter().find(|model| model.findings.name == name).unwrap()
 }
 
+const SAME_PAPER: (Preset, Preset) = (Preset::Paper, Preset::Paper);
+const SAME_BEST: (Preset, Preset) = (Preset::Best, Preset::Best);
+
 /// On a convex body every triangle's V is 1, exactly where F is seen or not seen, so that visibility has nothing to say.
 /// On a ball many edges cost the same; which of them goes first is rounding's choice and moves the image error by this many
 /// percent at most.
@@ -52,7 +59,7 @@ fn on_a_convex_body_visibility_changes_nothing() {
     let report = study_zt(&ZtRequest { presets: vec![Preset::Paper], ..request }, &Silent).unwrap();
     let ball = model(&report, "ball");
     assert_eq!(ball.visibility(Preset::Paper), Some(1.0));
-    assert!(ball.less_error(Preset::Paper, Preset::Paper).unwrap().abs() < TIES);
+    assert!(ball.less_error(SAME_PAPER, Levels::All).unwrap().abs() < TIES);
 }
 
 /// Half of the triangles lie in the dark; deleting them leaves the outside whole at the first level.
@@ -66,7 +73,7 @@ fn a_hidden_half_costs_quadrics_alone_their_pictures() {
     assert_eq!(vg.hidden_deleted * 2, nested.findings.triangles);
     assert_eq!(vg.levels[0].errors.image_rms, 0.0);
     assert!(nested.run(Preset::Best, Metric::Quadric).unwrap().levels[0].errors.image_rms > 0.0);
-    assert!(nested.less_error(Preset::Best, Preset::Best).unwrap() > 50.0);
+    assert!(nested.less_error(SAME_BEST, Levels::All).unwrap() > 50.0);
 }
 
 /// Counts the looks that are taken.
@@ -162,4 +169,144 @@ fn models_called_alike_and_levels_out_of_order_are_refused() {
         assert!(matches!(study_zt(&request, &Silent), Err(Error::Option { name: "--levels", .. })));
     }
     assert!(!home.path().join("zt").exists(), "a refused study writes nothing");
+}
+
+/// By how much less image error `vg` has than `qb` at a level, in percent.
+fn gain_at(vg: &RunFinding, qb: &RunFinding, level: usize) -> f64 {
+    100.0 * (1.0 - vg.levels[level].errors.image_rms / qb.levels[level].errors.image_rms)
+}
+
+/// Deleting the inner sphere leaves VG half of the triangles where 60 % were asked for.
+#[test]
+fn levels_with_other_counts_than_asked_for_are_told_apart() {
+    let home = tempfile::tempdir().unwrap();
+    let nested = shapes::nested_spheres(0.5, 3).mesh;
+    let request = ZtRequest { levels: vec![0.6, 0.25, 0.1], ..request(home.path(), &[("nested", nested)]) };
+    let report = study_zt(&request, &Silent).unwrap();
+    let nested = model(&report, "nested");
+    let run = |metric| nested.run(Preset::Best, metric).unwrap();
+    let (vg, qb) = (run(Metric::Visibility), run(Metric::Quadric));
+    let gains = [0, 1, 2].map(|level| gain_at(vg, qb, level));
+    let improvement = nested.improvement(SAME_BEST).unwrap();
+    assert_eq!(improvement.equal_counts, 2);
+    assert_eq!(improvement.less_error, Some(gains.iter().sum::<f64>() / 3.0));
+    assert_eq!(improvement.less_error_at_equal_counts, Some((gains[1] + gains[2]) / 2.0));
+    let left = vg.levels[0].triangles;
+    assert_eq!(left * 2, nested.findings.triangles);
+    assert!(nested.remarks().contains("At 60 % VG best has 1,280 triangles, since hidden triangles are deleted first"));
+    let table = nested.level_table();
+    assert_eq!(table.rows()[0][2], "0 with 1,280");
+    assert!(!table.rows()[1][2].contains("with"));
+    assert!(report.table2().to_string().contains("2 of 3"));
+}
+
+/// Levels of 1000, 500 and 100 triangles with an image error of 1, 2 and 4.
+fn known_run(home: &Path) -> RunFinding {
+    let request = ZtRequest { levels: vec![0.8, 0.5, 0.2], ..request(home, &[("ball", shapes::icosphere(2))]) };
+    let report = study_zt(&request, &Silent).unwrap();
+    let mut run = model(&report, "ball").run(Preset::Best, Metric::Quadric).unwrap().clone();
+    // The level that the pictures show is a fourth.
+    run.levels.truncate(3);
+    for (level, (triangles, error)) in run.levels.iter_mut().zip([(1000, 1.0), (500, 2.0), (100, 4.0)]) {
+        level.triangles = triangles;
+        level.errors.image_rms = error;
+    }
+    run
+}
+
+#[test]
+fn the_triangles_for_an_error_lie_between_the_levels_around_it() {
+    let home = tempfile::tempdir().unwrap();
+    let run = known_run(home.path());
+    let expected = [
+        (0.5, QuadricCount::MoreThan(1000)),
+        (1.0, QuadricCount::About(1000)),
+        // The square root of 1000 · 500 is 707.1, that of 500 · 100 is 223.6.
+        (1.5, QuadricCount::About(707)),
+        (3.0, QuadricCount::About(224)),
+        (4.0, QuadricCount::AtMost(100)),
+        (9.0, QuadricCount::AtMost(100)),
+    ];
+    for (error, triangles) in expected {
+        assert_eq!(run.triangles_for(error), Some(triangles), "{error}");
+    }
+    assert_eq!(RunFinding { levels: Vec::new(), ..run }.triangles_for(1.0), None);
+}
+
+/// Spheres around each other, of these radii: only the first is seen.
+fn onion(radii: &[f64]) -> TriMesh {
+    let shell = |&radius: &f64| {
+        shapes::transformed(&shapes::icosphere(2), &DAffine3::from_scale(DVec3::splat(radius))).unwrap()
+    };
+    shapes::merge(&radii.iter().map(shell).collect::<Vec<_>>()).unwrap()
+}
+
+#[test]
+fn models_that_hide_more_than_half_are_summed_up_apart() {
+    let home = tempfile::tempdir().unwrap();
+    // V(M) is about 1, 0.55 and 0.41, the seen share of the area.
+    let meshes = [("ball", onion(&[1.0])), ("two", onion(&[1.0, 0.9])), ("three", onion(&[1.0, 0.9, 0.8]))];
+    let request = ZtRequest { levels: vec![0.2], ..request(home.path(), &meshes) };
+    let report = study_zt(&request, &Silent).unwrap();
+    let gain = |name| model(&report, name).less_error(SAME_BEST, Levels::All).unwrap();
+    let levels: Vec<Levels> = report.summary.iter().map(|summary| summary.levels).collect();
+    assert_eq!(levels, [Levels::All, Levels::EqualCounts]);
+    let of_best = &report.summary[0];
+    assert_eq!((of_best.below_half.models, of_best.below_half.less_error), (1, Some(gain("three"))));
+    assert_eq!((of_best.from_half.models, of_best.from_half.less_error), (2, Some((gain("ball") + gain("two")) / 2.0)));
+    assert_eq!(of_best.all.models, 3);
+}
+
+#[test]
+fn page_and_tables_show_both_presets_and_what_they_leave_out() {
+    let home = tempfile::tempdir().unwrap();
+    let both = ZtRequest { presets: Preset::ALL.to_vec(), ..request(home.path(), &[("ball", shapes::icosphere(2))]) };
+    let read = |file: &str| fs::read_to_string(both.output.join(file)).unwrap();
+    let report = study_zt(&both, &Silent).unwrap();
+    report.write(&both, "{}").unwrap();
+    assert!(report.left_out.is_empty());
+    assert_eq!(report.summary.len(), 6, "three pairs of simplifiers at two choices of levels");
+    assert!(report.summary.iter().all(|summary| summary.correlations.len() == 2), "as either preset counts V");
+    let page = read("report.html");
+    for text in [
+        "Visibility (Fig. 2), preset paper",
+        "Visibility (Fig. 2), preset best",
+        "Visibility diagram of the mesh (Fig. 1), preset paper: columns are triangles",
+        "ball, side by side, preset paper",
+        "ball, side by side, preset best",
+        "ball: errors by level",
+    ] {
+        assert!(page.contains(text), "{text}");
+    }
+    let tables = read("tables.md");
+    for text in ["## Table 1", "## Table 2", "## Who gains", "## ball", "halves down to 1/128"] {
+        assert!(tables.contains(text), "{text}");
+    }
+
+    // An earlier run's.
+    fs::create_dir(both.output.join("cells/bumps")).unwrap();
+    let alone = ZtRequest { presets: vec![Preset::Best], ..both.clone() };
+    let report = study_zt(&alone, &Silent).unwrap();
+    report.write(&alone, "{}").unwrap();
+    assert_eq!(report.left_out, ["bumps"]);
+    for file in ["report.html", "tables.md"] {
+        assert!(
+            read(file).contains("Not in this report, though found earlier in the same directory: bumps."),
+            "{file}"
+        );
+    }
+    let heads = report.table2().heads();
+    assert_eq!(heads, ["model", "V(M)", "QB best (s)", "VG best (s)", "VG best (% less than QB best)"]);
+    assert!(read("tables.md").contains("QB and VG were not studied"));
+}
+
+#[test]
+fn a_plan_counts_levels_and_the_pieces_of_what_is_still_to_be_cut() {
+    let home = tempfile::tempdir().unwrap();
+    let request = ZtRequest { presets: Preset::ALL.to_vec(), ..request(home.path(), &[("a", shapes::tetrahedron())]) };
+    let plan = plan_zt(&request).unwrap();
+    let looks: Vec<_> = plan.iter().filter(|planned| matches!(planned.cell, Cell::Look(_))).collect();
+    // Four triangles with edges of 1.63 radii, 126 pixels for a diameter: 103 pixels, cut four times to less than 8.
+    assert_eq!(looks.iter().map(|planned| planned.pieces).collect::<Vec<_>>(), [Some(4.0 * 256.0), None]);
+    assert!(plan.iter().all(|planned| planned.levels == 2), "one that was asked for, one in pictures");
 }

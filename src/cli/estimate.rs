@@ -146,27 +146,37 @@ fn measure_seconds(triangles: usize, cameras: usize, resolution: u32) -> f64 {
     axis * cameras as f64 / 2.0 / rayon::current_num_threads() as f64
 }
 
-/// Seconds of one thread to compare a level with an original, and more for each of the original's triangles.
-const LEVEL_SECONDS: f64 = 1.5;
-const LEVEL_SECONDS_PER_TRIANGLE: f64 = 1e-6;
+/// Seconds of one thread to compare a level with an original, more for each of the original's triangles and each sample.
+const LEVEL_SECONDS: f64 = 0.8;
+const LEVEL_SECONDS_PER_TRIANGLE: f64 = 2e-6;
+const LEVEL_SECONDS_PER_SAMPLE: f64 = 7e-7;
+/// Seconds of one thread per camera axis and piece of a triangle, depth rescue included.
+const SECONDS_PER_PIECE_AXIS: f64 = 9e-8;
+/// Cameras of the octahedral patterns and the spiral that convergence looks through.
+const CONVERGENCE_CAMERAS: usize = 6 + 18 + 66 + 258 + 1026 + 4098 + 4096;
 
-/// Seconds that a cell of `study zt` takes. Rough.
+/// Seconds that a cell of `study zt` takes, within a factor of two; its constants were measured on two threads of a server
+/// processor, and scale with the options and the threads.
 pub fn study_seconds(planned: &PlannedCell, request: &ZtRequest) -> f64 {
     let triangles = planned.triangles;
     let threads = rayon::current_num_threads() as f64;
-    let look = measure_seconds(triangles, request.cameras.unwrap_or(258), request.resolution.unwrap_or(0));
+    let cameras = request.cameras.unwrap_or(258);
+    let look = measure_seconds(triangles, cameras, request.resolution.unwrap_or(0));
     match planned.cell {
-        Cell::Look(_) => look,
+        Cell::Look(_) => planned
+            .pieces
+            .map_or(look, |pieces| look + SECONDS_PER_PIECE_AXIS * pieces * cameras as f64 / 2.0 / threads),
         Cell::Run(preset, metric) => {
             let again = preset == Preset::Best && metric == Metric::Visibility;
             let looking = if again { LOOKING_AGAIN * look } else { 0.0 };
-            let level = LEVEL_SECONDS + LEVEL_SECONDS_PER_TRIANGLE * triangles as f64;
-            let levels = request.levels.len() as f64 * level / threads;
-            looking + triangles as f64 / COLLAPSED_TRIANGLES_PER_SECOND + levels
+            let level = LEVEL_SECONDS
+                + LEVEL_SECONDS_PER_TRIANGLE * triangles as f64
+                + LEVEL_SECONDS_PER_SAMPLE * request.samples as f64;
+            looking + triangles as f64 / COLLAPSED_TRIANGLES_PER_SECOND + planned.levels as f64 * level / threads
         }
-        Cell::Pictures(_) => 1.0,
+        Cell::Pictures(_) => 0.5,
         Cell::Viewer => 1.0 + triangles as f64 / COLLAPSED_TRIANGLES_PER_SECOND,
-        Cell::Convergence => 2.0 * measure_seconds(triangles, 4098, request.resolution.unwrap_or(480)),
+        Cell::Convergence => measure_seconds(triangles, CONVERGENCE_CAMERAS, request.resolution.unwrap_or(480)),
     }
 }
 

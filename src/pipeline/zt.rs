@@ -5,11 +5,16 @@
 
 mod bench;
 mod cell;
+mod csv;
+mod figures;
+mod gain;
 mod page;
 mod plots;
 mod report;
 mod store;
+mod summary;
 mod tables;
+mod words;
 mod write;
 
 use std::path::PathBuf;
@@ -19,21 +24,25 @@ use serde::Serialize;
 pub use cell::{
     Cell, LevelErrors, LevelFinding, LookFinding, PicturesFinding, RunFinding, SheetFinding, ViewerFinding,
 };
-pub use report::{Correlation, Improvement, ModelReport, ZtReport};
+pub use gain::{EqualError, Improvement, Levels, PresetPair, QuadricCount};
+pub use report::{ModelReport, ZtReport};
+pub use summary::{Correlation, ImprovementSummary, MeanImprovement};
 
 use crate::camera::Cameras;
 use crate::error::{Error, Result};
 use crate::io::{self, ReadOptions};
+use crate::mesh::TriMesh;
 use crate::pipeline::{MeshConvergence, Metric, Observer, Preset};
 use crate::report::paper::PaperModel;
 use crate::simplify::Target;
-use crate::visibility::MeasureOptions;
+use crate::visibility::{Estimator, MeasureOptions, estimated_pieces};
 
 use bench::Bench;
 use cell::Finding;
 use store::Store;
 
-/// Shares of the triangles at the seven levels of table 2 and figure 4; the paper does not say which it took.
+/// Shares of the triangles at the seven levels of table 2 and figure 4. The paper does not say which it took; halves spread
+/// evenly over the logarithmic axis of figure 4.
 pub const LEVELS: [f64; 7] = [0.5, 0.25, 0.125, 0.0625, 0.031_25, 0.015_625, 0.007_812_5];
 
 /// What [`study_zt`] does.
@@ -83,6 +92,10 @@ pub struct PlannedCell {
     pub model: String,
     /// Its triangles.
     pub triangles: usize,
+    /// Levels at which it is compared, those that the paper names included.
+    pub levels: usize,
+    /// About how many pieces its triangles are cut into where the cell looks by [`Estimator::ItemBuffer`].
+    pub pieces: Option<f64>,
     /// What is to be found.
     pub cell: Cell,
     /// An earlier run found it.
@@ -120,9 +133,12 @@ pub fn plan_zt(request: &ZtRequest) -> Result<Vec<PlannedCell>> {
     let mut plan = Vec::new();
     for model in &request.models {
         let store = Store::of(model, request)?;
-        let triangles = io::read(&model.path, &request.read)?.mesh.triangle_count();
+        let mesh = io::read(&model.path, &request.read)?.mesh;
+        let (triangles, levels) = (mesh.triangle_count(), request.counts(model, mesh.triangle_count()).len());
         for cell in Cell::all(request) {
-            plan.push(PlannedCell { model: model.name.clone(), triangles, cell, done: store.has(cell)? });
+            let done = store.has(cell)?;
+            let pieces = request.pieces(cell, &mesh).filter(|_| !done);
+            plan.push(PlannedCell { model: model.name.clone(), triangles, levels, pieces, cell, done });
         }
     }
     Ok(plan)
@@ -142,7 +158,7 @@ pub fn study_zt(request: &ZtRequest, observer: &dyn Observer) -> Result<ZtReport
     request.models.iter().try_for_each(|model| Store::of(model, request).map(drop))?;
     let study = |model| study_model(model, request, observer);
     let findings = request.models.iter().map(study).collect::<Result<_>>()?;
-    Ok(ZtReport::of(&request.models, findings))
+    Ok(ZtReport::of(&request.models, findings, store::others(request)?))
 }
 
 fn study_model(model: &ZtModel, request: &ZtRequest, observer: &dyn Observer) -> Result<ModelFindings> {
@@ -214,6 +230,13 @@ impl ZtRequest {
             memory_limit: self.memory_limit,
             ..options
         }
+    }
+
+    /// About how many pieces a look cuts the triangles into; `None` for what cuts nothing.
+    fn pieces(&self, cell: Cell, mesh: &TriMesh) -> Option<f64> {
+        let Cell::Look(preset) = cell else { return None };
+        let options = self.measure(preset);
+        (options.estimator == Estimator::ItemBuffer).then(|| estimated_pieces(mesh, &options))
     }
 
     /// Triangles of a level: asked for as a share, or as a count that the paper names.

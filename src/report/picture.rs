@@ -1,5 +1,7 @@
 //! A picture in memory: pixels, boxes, text, PNG.
 
+mod coarse;
+
 use std::io::{self, Write};
 
 use crate::error::{Error, Result};
@@ -121,20 +123,6 @@ impl Picture {
             return Err(wrong("it is not of 8-bit RGB".to_owned()));
         }
         Self::from_rgb(frame.width, frame.height, rgb)
-    }
-
-    /// The picture at half of its width and height, each pixel the mean of four; an odd last row or column is left out.
-    #[must_use]
-    pub fn halved(&self) -> Self {
-        let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
-        let mut half = Self::filled(width, height, WHITE);
-        for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
-            let four = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| self.pixel(2 * x + i, 2 * y + j).unwrap_or(WHITE));
-            let mean =
-                |channel: usize| four.iter().map(|pixel| u32::from(pixel[channel])).sum::<u32>().div_ceil(4) as u8;
-            half.set(x, y, [0, 1, 2].map(mean));
-        }
-        half
     }
 
     /// Columns.

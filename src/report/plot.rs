@@ -21,7 +21,7 @@ pub struct LogLogPlot {
     pub x: String,
     /// What the vertical axis measures, with its unit.
     pub y: String,
-    /// A dotted line shows this power of x, for comparison.
+    /// A thin line shows this power of x, for comparison.
     pub slope: f64,
 }
 
@@ -56,6 +56,11 @@ pub enum Mark {
 
 /// Pixels of a panel.
 const PANEL: (u32, u32) = (620, 560);
+
+/// Pixels of a line of a legend.
+const LEGEND_LINE: f64 = 18.0;
+/// The largest share of a plot that is kept free for its legend; a longer one is laid over the curves.
+const MOST_LEGEND: f64 = 0.5;
 
 /// Okabe & Ito 2008: told apart by every eye.
 const COLOURS: [RGBColor; 6] = [
@@ -100,9 +105,19 @@ impl LogLogPlot {
             if least <= most { (least / 1.3, most * 1.3) } else { (0.1, 1.0) }
         };
         let (x, y) = (range(|p| p.0), range(|p| p.1));
-        // Whole decades of y, so that enough of its numbers are round and the legend finds room.
-        let decade = |round: fn(f64) -> f64, y: f64| libm::pow(10.0, round(libm::log10(y)));
-        [x, (decade(f64::floor, y.0), decade(f64::ceil, y.1))]
+        // Whole decades of y, so that enough of its numbers are round.
+        let (least, top) = (libm::log10(y.0), f64::ceil(libm::log10(y.1)));
+        // The legend stands at the lower left, and no point behind it.
+        let legend = self.legend_share();
+        let bottom = f64::floor(least).min((least - legend * top) / (1.0 - legend));
+        [x, (libm::exp10(bottom), libm::exp10(top))]
+    }
+
+    /// The share of a panel's height that the legend takes.
+    fn legend_share(&self) -> f64 {
+        let curves = |panel: &Panel| panel.groups.iter().map(Vec::len).sum::<usize>();
+        let lines = 1 + self.panels.iter().map(curves).max().unwrap_or(0);
+        (LEGEND_LINE * (lines + 1) as f64 / f64::from(PANEL.1)).min(MOST_LEGEND)
     }
 
     /// Every x that has a point: these are numbered, not round ones that nobody measured.
@@ -151,12 +166,9 @@ impl LogLogPlot {
         let end = x.1.min(x.0 * libm::pow(y.0 / y.1, 1.0 / self.slope));
         let at = |x_here: f64| (x_here, y.1 * libm::pow(x_here / x.0, self.slope));
         chart
-            .draw_series(DashedLineSeries::new([at(x.0), at(end)], 2, 4, grey.into()))?
+            .draw_series([PathElement::new([at(x.0), at(end)], grey)])?
             .label(format!("slope {}", self.slope))
-            .legend(move |(x, y)| {
-                let dash = |from: i32| PathElement::new([(from, 0), (from + 4, 0)], grey);
-                EmptyElement::at((x, y)) + dash(0) + dash(8) + dash(16)
-            });
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 20, y)], grey));
         Ok(())
     }
 }
@@ -193,7 +205,7 @@ fn draw_curve<'a, B: DrawingBackend + 'a>(chart: &mut Chart<'a, B>, curve: &Curv
     let drawn = if filled {
         chart.draw_series([PathElement::new(visible(curve), line)])?
     } else {
-        chart.draw_series(DashedLineSeries::new(visible(curve), 6, 4, line))?
+        chart.draw_series(DashedLineSeries::new(visible(curve), 10, 6, line))?
     };
     drawn.label(&curve.name).legend(move |(x, y)| {
         EmptyElement::at((x, y)) + PathElement::new([(0, 0), (20, 0)], line) + Circle::new((10, 0), 4, marker)
@@ -220,6 +232,30 @@ mod tests {
         }
         // Two points can be shown, and one disc stands in the legend.
         assert_eq!(svg.matches("<circle").count(), 3);
+    }
+
+    /// Attribute `name` of an element of the document.
+    fn number(element: &str, name: &str) -> f64 {
+        element.split(&format!(" {name}=\"")).nth(1).unwrap().split('"').next().unwrap().parse().unwrap()
+    }
+
+    #[test]
+    fn no_point_lies_behind_the_legend() {
+        // Low at the left, as no convergence is, and just above a decade.
+        let curve = |i: usize| {
+            let points = vec![(6.0, 0.0101), (18.0, 0.1), (4098.0, 0.0101)];
+            Curve { name: format!("a mesh with a long name, {i}"), points, mark: Mark::Filled }
+        };
+        let panel = Panel { title: String::new(), groups: vec![(0..4).map(curve).collect()] };
+        let plot = LogLogPlot { panels: vec![panel], x: String::new(), y: String::new(), slope: -0.75 };
+        let svg = plot.to_svg().unwrap();
+        let legend = svg.lines().rfind(|line| line.starts_with("<rect")).unwrap();
+        let top = number(legend, "y");
+        let circles: Vec<f64> =
+            svg.lines().filter(|line| line.starts_with("<circle")).map(|line| number(line, "cy")).collect();
+        // Three points on each of four curves above it, and one mark for each curve within.
+        assert_eq!(circles.iter().filter(|&&y| y + 4.0 < top).count(), 12);
+        assert_eq!(circles.iter().filter(|&&y| y > top).count(), 4);
     }
 
     #[test]

@@ -75,11 +75,15 @@ impl Table {
         &self.rows
     }
 
-    /// The table as GitHub writes it; the first column to the left, the others to the right.
+    /// The table as GitHub writes it, columns aligned as here.
     #[must_use]
     pub fn to_markdown(&self) -> String {
-        let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
-        let rule = (0..self.headers.len()).map(|column| if column == 0 { "---" } else { "---:" });
+        let line = |cells: &[String]| {
+            let escaped: Vec<String> = cells.iter().map(|cell| cell.replace('|', "\\|")).collect();
+            format!("| {} |\n", escaped.join(" | "))
+        };
+        let is_left = |column: usize| self.left_aligned.contains(&column);
+        let rule = (0..self.headers.len()).map(|column| if is_left(column) { "---" } else { "---:" });
         let rule: Vec<String> = rule.map(str::to_owned).collect();
         let rows: String = self.rows.iter().map(|row| line(row)).collect();
         format!("{}{}{rows}", line(&self.heads()), line(&rule))
@@ -166,6 +170,12 @@ mod tests {
     fn a_column_can_be_aligned_to_the_left() {
         let table = Table::new(["n", "file"]).left(1).row(["1", "a"]);
         assert_eq!(table.to_string(), "n   file\n-   ----\n1   a\n");
+    }
+
+    #[test]
+    fn markdown_keeps_columns_apart_whatever_stands_in_them() {
+        let table = Table::new(["name", "n"]).units(["", "s"]).row(["a|b", "1"]);
+        assert_eq!(table.to_markdown(), "| name | n (s) |\n| --- | ---: |\n| a\\|b | 1 |\n");
     }
 
     #[test]

@@ -39,6 +39,7 @@ pub use importance::{Hidden, importance};
 pub use kept::{KeptFault, KeptMeasurement, MeasurementKey};
 pub use options::{DepthRescue, Estimator, MeasureOptions, Sides};
 pub use per_vertex::per_vertex;
+pub use pieces::estimated_pieces;
 pub use ray_options::{MOST_SAMPLES, PartlySeen, RayOptions};
 pub use setting::Setting;
 pub use subject::Subject;

@@ -1,9 +1,9 @@
 use glam::DVec3;
 
 use crate::backend::{ItemBuffers, Machine, MachineScratch};
-use crate::camera::{View, Window};
+use crate::camera::{Frame, View, Window};
 use crate::error::Result;
-use crate::mesh::{Subdivision, TriangleId};
+use crate::mesh::{Subdivision, TriMesh, TriangleId};
 use crate::raster::{ItemBufferPair, Side};
 use crate::visibility::rescue::{Rescuer, Soundings};
 use crate::visibility::{MeasureOptions, Shapes, Subject};
@@ -16,6 +16,18 @@ const LONGEST_EDGE: f64 = 8.0;
 
 /// A piece as it is cut, narrowed, laid out for the machine and counted, with its share of the vertices.
 const BYTES_PER_PIECE: u64 = 128;
+
+/// About how many pieces [`crate::visibility::Estimator::ItemBuffer`] cuts a mesh into under these options.
+#[must_use]
+pub fn estimated_pieces(mesh: &TriMesh, options: &MeasureOptions) -> f64 {
+    let window = Window::around_sphere(options.resolution_for(mesh.triangle_count()));
+    Subdivision::estimate(mesh, longest_edge(window, &Frame::of(mesh)))
+}
+
+/// Longest edge of a piece, in model units.
+fn longest_edge(window: Window, frame: &Frame) -> f64 {
+    LONGEST_EDGE * window.pixel_size() * frame.radius
+}
 
 /// A mesh cut into pieces that are not much larger than pixels, laid out for the machine that looks at them.
 pub(super) struct Pieces<'a> {
@@ -60,7 +72,7 @@ impl<'a> Pieces<'a> {
     pub fn of(subject: &Subject<'_>, shapes: &'a Shapes, window: Window, options: &MeasureOptions) -> Result<Self> {
         let frame = subject.frame();
         let most = options.memory_limit.map_or(usize::MAX, |bytes| (bytes / BYTES_PER_PIECE) as usize);
-        let cut = Subdivision::of(subject.mesh(), LONGEST_EDGE * window.pixel_size() * frame.radius, most)?;
+        let cut = Subdivision::of(subject.mesh(), longest_edge(window, frame), most)?;
         // However small a piece is, it can be seen if the whole can.
         let unit = frame.unit_copy_of(cut.mesh(), |piece| shapes.areas[cut.parent(piece).0 as usize] > 0.0);
         let positions = unit.positions.clone();

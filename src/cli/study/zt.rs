@@ -32,7 +32,8 @@ pub struct Flags {
     /// Whose options: the paper's, the best, or each in turn
     #[arg(long, value_name = "NAME", default_value = "both")]
     preset: Presets,
-    /// Shares of the triangles at which simplifiers are compared, descending [default: 0.5, 0.25, … 0.0078125]
+    /// Shares of the triangles at which simplifiers are compared, descending, as in 0.2,0.1,0.05 [default: halves, 0.5, 0.25,
+    /// … 0.0078125: the paper has seven levels, evenly spread in its figure, and does not say which]
     #[arg(long, value_name = "R,R,…", value_delimiter = ',', value_parser = values::ratio)]
     levels: Vec<f64>,
     /// Samples on each mesh for the geometric error
@@ -178,16 +179,18 @@ fn dry_run(request: &ZtRequest, console: &Console) -> std::result::Result<(), Fa
 fn text(report: &ZtReport, directory: &Path) -> String {
     let stands = report.models.iter().filter(|model| model.stand.model().is_some());
     let stands: String = stands.map(|m| format!("{}: {}\n", m.findings.name, m.stand_in_words)).collect();
-    let correlations = report.correlations.iter().filter_map(|c| {
-        let rank = c.rank_correlation?;
-        Some(format!("rank correlation of V(M) and less error, {}: {rank:.2} ({} models)\n", c.preset.name(), c.models))
-    });
+    let left_out = report.left_out_in_words().map(|words| format!("{words}\n"));
+    let [page, tables] = ["report.html", "tables.md"].map(|file| directory.join(file));
     format!(
         "Visibility (table 1), in brackets what the paper prints\n{}\n\
-         Image error of VG against QB (table 2)\n{}\n{stands}{}written  {}\n",
+         Image error of VG against QB (table 2)\n{}\n\
+         Image error of VG against QB, mean over the models, in brackets how many, and rank correlation with V(M)\n{}\n\
+         {stands}{}written  {}, {}\n",
         report.table1(),
         report.table2(),
-        correlations.collect::<String>(),
-        directory.join("report.html").display(),
+        report.gains_table(),
+        left_out.unwrap_or_default(),
+        page.display(),
+        tables.display(),
     )
 }

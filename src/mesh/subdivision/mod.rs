@@ -49,6 +49,27 @@ impl Subdivision {
         }
     }
 
+    /// About how many pieces cutting `mesh` makes, without cutting it: as if every cut of a triangle shortened all its edges
+    /// alike.
+    #[must_use]
+    pub fn estimate(mesh: &TriMesh, longest: f64) -> f64 {
+        let of_triangle = |&triangle: &[u32; 3]| {
+            let positions = mesh.positions();
+            let mut lengths = edges(triangle).map(|[a, b]| (positions[a as usize] - positions[b as usize]).length());
+            let mut pieces = 1.0;
+            loop {
+                // Each long edge of a piece makes one piece more.
+                let long = lengths.iter().filter(|&&length| length > longest).count();
+                if long == 0 || !f64::is_finite(pieces) {
+                    return pieces;
+                }
+                pieces *= 1.0 + long as f64;
+                lengths = lengths.map(|length| 0.5 * length);
+            }
+        };
+        mesh.triangles().iter().map(of_triangle).sum()
+    }
+
     /// The pieces as a mesh.
     #[must_use]
     pub fn mesh(&self) -> &TriMesh {

@@ -102,6 +102,23 @@ fn three_long_edges_make_four_pieces() {
     assert_eq!(halvings(&made), [2, 2, 2, 2]);
 }
 
+/// Halving all edges alike is what happens to a regular triangle; others are estimated within this factor.
+const ESTIMATE: f64 = 2.0;
+
+#[test]
+fn the_number_of_pieces_is_known_about_before_they_are_made() {
+    let regular = triangle([[0.0, 0.0], [4.0, 0.0], [2.0, 12.0_f64.sqrt()]]);
+    assert_eq!(Subdivision::estimate(&regular, 1.1), 16.0);
+    assert_eq!(Subdivision::estimate(&regular, 5.0), 1.0);
+    let sliver = triangle([[0.0, 0.0], [4.0, 0.1], [4.0, -0.1]]);
+    for mesh in [regular, sliver, shapes::cluttered_open_box(1, 20, 1).mesh, shapes::nested_spheres(0.5, 2).mesh] {
+        let longest = 0.05 * longest_edge(&mesh);
+        let (estimate, made) =
+            (Subdivision::estimate(&mesh, longest), cut(&mesh, longest).mesh().triangle_count() as f64);
+        assert!(estimate / made < ESTIMATE && made / estimate < ESTIMATE, "{estimate} for {made}");
+    }
+}
+
 /// Two triangles share the edge 1–2, and both find the same midpoint.
 #[test]
 fn neighbours_share_midpoints() {

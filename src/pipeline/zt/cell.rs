@@ -241,16 +241,4 @@ impl RunFinding {
     pub fn level_of(&self, asked: usize) -> Option<&LevelFinding> {
         self.levels.iter().find(|level| level.asked == asked)
     }
-
-    /// By how much the image error is below that of `other`, in percent of `other`'s, mean over the levels. A level at which
-    /// `other` has no error is left out; `None` if that leaves none.
-    ///
-    /// Source: Zhang & Turk 2002, table 2, last column.
-    #[must_use]
-    pub fn less_error_than(&self, other: &Self) -> Option<f64> {
-        let pairs = self.shared_levels().zip(other.shared_levels());
-        let ratios = pairs.map(|(a, b)| (a.errors.image_rms, b.errors.image_rms)).filter(|&(_, b)| b > 0.0);
-        let gains: Vec<f64> = ratios.map(|(a, b)| 100.0 * (1.0 - a / b)).collect();
-        (!gains.is_empty()).then(|| gains.iter().sum::<f64>() / gains.len() as f64)
-    }
 }

@@ -3,8 +3,10 @@
 use std::io;
 
 use super::cell::{LevelErrors, LevelFinding, RunFinding};
+use super::gain::Levels;
 use super::report::{ModelReport, ZtReport};
-use crate::pipeline::{ConvergenceReport, IndependentReference, Metric, Preset};
+use super::words::short;
+use crate::pipeline::{ConvergenceReport, IndependentReference, MeshConvergence, Metric, Preset};
 use crate::report::plot::{LogLogPlot, MethodCurves, NamedPoint, ScatterGroup, ScatterPlot, TwoAxisPlot};
 
 /// A plot and its file's name.
@@ -18,29 +20,28 @@ pub(super) struct Plot {
 }
 
 impl ZtReport {
-    /// How V(M) goes with the improvement over QB `paper`, a group of points per preset; `None` where fewer than two models
-    /// have both.
+    /// How V(M) goes with the improvement over QB of the same preset, a group of points per preset; `None` where fewer than two
+    /// models have both.
     pub(super) fn correlation_plot(&self) -> io::Result<Option<Plot>> {
-        if self.correlations.iter().all(|correlation| correlation.models < 2) {
-            return Ok(None);
-        }
         let group = |preset: Preset| {
             let point = |model: &ModelReport| {
-                let (x, y) = (model.visibility(preset)?, model.less_error(preset, Preset::Paper)?);
+                let (x, y) = (model.visibility(preset)?, model.less_error((preset, preset), Levels::All)?);
                 Some(NamedPoint { name: model.findings.name.clone(), x, y })
             };
-            ScatterGroup {
-                name: format!("VG {}", preset.name()),
-                points: self.models.iter().filter_map(point).collect(),
-            }
+            let [vg, qb] = [Metric::Visibility, Metric::Quadric].map(|metric| short(preset, metric));
+            ScatterGroup { name: format!("{vg} against {qb}"), points: self.models.iter().filter_map(point).collect() }
         };
+        let groups: Vec<ScatterGroup> = self.presets().into_iter().map(group).collect();
+        if groups.iter().all(|group| group.points.len() < 2) {
+            return Ok(None);
+        }
         let plot = ScatterPlot {
-            title: "less image error than QB paper".to_owned(),
-            x: "visibility of the model, V(M)".to_owned(),
+            title: "Image error of VG below that of QB with the same options".to_owned(),
+            x: "visibility of the model, V(M), as these options count it".to_owned(),
             y: "less image error, mean over the levels (%)".to_owned(),
-            groups: self.presets().into_iter().map(group).collect(),
+            groups,
         };
-        let caption = "Less image error than QB paper, by the visibility of the model".to_owned();
+        let caption = "Less image error than QB with the same options, by the visibility of the model".to_owned();
         Ok(Some(Plot { file: "correlation.svg".to_owned(), model: None, caption, svg: plot.to_svg()? }))
     }
 }
@@ -70,14 +71,16 @@ impl ModelReport {
     /// Figure 3: how exact V is by the number of cameras.
     pub(super) fn convergence_plot(&self) -> io::Result<Option<Plot>> {
         let Some(convergence) = &self.findings.convergence else { return Ok(None) };
-        let of_one = ConvergenceReport::of(IndependentReference::Fibonacci, vec![convergence.clone()]);
-        let plot: LogLogPlot = of_one.plot();
-        let caption = "Mean error of V by the number of cameras (Fig. 3)".to_owned();
         let name = &self.findings.name;
+        let named = MeshConvergence { file: name.into(), ..convergence.clone() };
+        let of_one = ConvergenceReport::of(IndependentReference::Fibonacci, vec![named]);
+        let plot: LogLogPlot = of_one.plot();
+        let caption =
+            "Mean error of V by the number of cameras (Fig. 3), cameras counted alike (equal) or by solid angle (area)";
         Ok(Some(Plot {
             file: format!("{name}-convergence.svg"),
             model: Some(name.clone()),
-            caption,
+            caption: caption.to_owned(),
             svg: plot.to_svg()?,
         }))
     }

@@ -97,6 +97,19 @@ impl<'a> Store<'a> {
     }
 }
 
+/// Models that earlier runs left findings of in the study's directory, and that are not in `request`; by name.
+pub(super) fn others(request: &ZtRequest) -> Result<Vec<String>> {
+    let cells = request.output.join(CELLS);
+    let read = |source| Error::Read { path: cells.clone(), source };
+    let mut names = Vec::new();
+    for entry in fs::read_dir(&cells).map_err(read)? {
+        names.push(entry.map_err(read)?.file_name().to_string_lossy().into_owned());
+    }
+    names.retain(|name| request.models.iter().all(|model| &model.name != name));
+    names.sort_unstable();
+    Ok(names)
+}
+
 fn hexadecimal(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -1,12 +1,22 @@
-//! Tables 1 and 2, for people and for programs.
+//! Tables 1 and 2, who gains, and the levels of each model, for people.
 
-use std::io;
-
-use serde::Serialize;
-
+use super::cell::{LevelFinding, RunFinding};
+use super::gain::{EqualError, Levels, PresetPair, QuadricCount};
 use super::report::{ModelReport, ZtReport};
+use super::summary::{HALF, ImprovementSummary, MeanImprovement};
+use super::words::{percent_of, short};
 use crate::pipeline::{Metric, Preset};
+use crate::report::paper;
+use crate::report::rank::spearman;
 use crate::report::table::{Table, thousands};
+
+/// The simplifiers in the order of the tables.
+const RUNS: [(Preset, Metric); 4] = [
+    (Preset::Paper, Metric::Quadric),
+    (Preset::Paper, Metric::Visibility),
+    (Preset::Best, Metric::Quadric),
+    (Preset::Best, Metric::Visibility),
+];
 
 impl ZtReport {
     /// Table 1: how well the models are seen, and how long it takes; what the paper prints in brackets.
@@ -32,74 +42,183 @@ impl ZtReport {
         table
     }
 
-    /// Table 2: by how much VG's pictures are nearer to the original than QB's; what the paper prints in brackets.
+    /// Table 2: by how much VG's pictures are nearer to the original than QB's; what the paper prints in brackets. It has
+    /// columns for what was studied, and for equal counts where some levels have others.
     #[must_use]
     pub fn table2(&self) -> Table {
-        let mut table = Table::new([
-            "model", "V(M)", "QB paper", "VG paper", "VG best", "VG paper", "VG best", "VG best",
-        ])
-        .units(["", "", "s", "s", "s", "% less", "% less", "% less than QB best"]);
-        for model in &self.models {
-            let printed = model.stand.model().and_then(|paper| paper.table2);
-            let seconds = |preset, metric| {
-                let printed = printed.filter(|_| preset == Preset::Paper).map(|row| minutes(row.simplify_seconds));
-                model.run(preset, metric).map_or_else(dash, |run| beside(format!("{:.1}", run.seconds), printed))
-            };
-            let gain = |visibility, quadric| model.less_error(visibility, quadric).map_or_else(dash, percent);
-            let visibility = model.visibility(Preset::Paper).or(model.visibility(Preset::Best));
-            table = table.row([
-                model.findings.name.clone(),
-                visibility.map_or_else(dash, |v| format!("{v:.3}")),
-                seconds(Preset::Paper, Metric::Quadric),
-                seconds(Preset::Paper, Metric::Visibility),
-                seconds(Preset::Best, Metric::Visibility),
-                beside(gain(Preset::Paper, Preset::Paper), printed.map(|row| format!("{:.2}", row.less_error))),
-                gain(Preset::Best, Preset::Paper),
-                gain(Preset::Best, Preset::Best),
-            ]);
+        let columns = self.columns();
+        let heads = columns.iter().map(|column| column.head.clone());
+        let units = columns.iter().map(|column| column.unit.clone());
+        let empty = Table::new(["model".to_owned(), "V(M)".to_owned()].into_iter().chain(heads));
+        let empty = empty.units([String::new(), String::new()].into_iter().chain(units));
+        self.models.iter().fold(empty, |table, model| {
+            let cells = columns.iter().map(|column| (column.cell)(model));
+            let visibility = model.table_visibility().map_or_else(dash, |v| format!("{v:.3}"));
+            table.row([model.findings.name.clone(), visibility].into_iter().chain(cells))
+        })
+    }
+
+    fn columns(&self) -> Vec<Column> {
+        let ran = |(preset, metric): &(Preset, Metric)| self.models.iter().any(|m| m.run(*preset, *metric).is_some());
+        let mut columns: Vec<Column> = RUNS.into_iter().filter(ran).map(Column::of_seconds).collect();
+        for summary in self.summary.iter().filter(|summary| summary.levels == Levels::All) {
+            let pair = (summary.visibility, summary.quadric);
+            columns.push(Column::of_gain(pair));
+            let differs = |m: &ModelReport| m.less_error(pair, Levels::All) != m.less_error(pair, Levels::EqualCounts);
+            if self.models.iter().any(differs) {
+                columns.push(Column::of_equal_counts(pair));
+            }
         }
-        table
+        columns
     }
 
-    /// The presets that were studied.
+    /// Who gains: the improvement of all models, of those with V(M) below and from a half, and its rank correlation with
+    /// V(M), by the ways in which simplifiers, levels and V may be chosen. How many models, in brackets. The first row is
+    /// the paper's own.
     #[must_use]
-    pub fn presets(&self) -> Vec<Preset> {
-        let studied = |preset: &Preset| self.models.iter().any(|model| model.look(*preset).is_some());
-        Preset::ALL.into_iter().filter(studied).collect()
-    }
-
-    /// The findings of every level as comma-separated values (RFC 4180), one row per model, simplifier and level.
-    ///
-    /// # Errors
-    /// As `output`.
-    pub fn write_levels_csv(&self, output: &mut dyn io::Write) -> io::Result<()> {
-        write_csv(self.models.iter().flat_map(LevelRow::of), output)
-    }
-
-    /// What tables 1 and 2 say, as comma-separated values, one row per model and preset.
-    ///
-    /// # Errors
-    /// As `output`.
-    pub fn write_models_csv(&self, output: &mut dyn io::Write) -> io::Result<()> {
-        let rows = self.models.iter().flat_map(|model| Preset::ALL.map(|preset| ModelRow::of(model, preset)));
-        write_csv(rows.flatten(), output)
-    }
-
-    /// Figure 3 as comma-separated values, one row per model, number of cameras and weights.
-    ///
-    /// # Errors
-    /// As `output`.
-    pub fn write_convergence_csv(&self, output: &mut dyn io::Write) -> io::Result<()> {
-        write_csv(self.models.iter().flat_map(ConvergenceRow::of), output)
+    pub fn gains_table(&self) -> Table {
+        let presets = self.presets();
+        let ranks = presets.iter().map(|preset| format!("rank, V {}", preset.name()));
+        let heads = ["compared", "levels", "all models", "V(M) < 0.5", "V(M) ≥ 0.5"].map(str::to_owned);
+        let empty = Table::new(heads.into_iter().chain(ranks)).left(1).row(printed_row(&presets));
+        self.summary.iter().fold(empty, |table, summary| {
+            let ranks = presets.iter().map(|&preset| rank(summary.rank_correlation(preset)));
+            table.row(means(summary).into_iter().chain(ranks))
+        })
     }
 }
 
-fn write_csv<T: Serialize>(rows: impl Iterator<Item = T>, output: &mut dyn io::Write) -> io::Result<()> {
-    let mut writer = csv::Writer::from_writer(output);
-    for row in rows {
-        writer.serialize(row).map_err(io::Error::other)?;
+/// A column of table 2.
+struct Column {
+    head: String,
+    unit: String,
+    cell: Box<dyn Fn(&ModelReport) -> String>,
+}
+
+impl Column {
+    fn of_seconds((preset, metric): (Preset, Metric)) -> Self {
+        let cell = move |model: &ModelReport| {
+            let printed = printed(model).filter(|_| preset == Preset::Paper).map(|row| minutes(row.simplify_seconds));
+            model.run(preset, metric).map_or_else(dash, |run| beside(format!("{:.1}", run.seconds), printed))
+        };
+        Self { head: short(preset, metric), unit: "s".to_owned(), cell: Box::new(cell) }
     }
-    writer.flush()
+
+    fn of_gain(pair: PresetPair) -> Self {
+        let cell = move |model: &ModelReport| {
+            let printed = printed(model).filter(|_| pair == (Preset::Paper, Preset::Paper));
+            let gain = model.less_error(pair, Levels::All).map_or_else(dash, percent);
+            beside(gain, printed.map(|row| format!("{:.2}", row.less_error)))
+        };
+        Self { head: short(pair.0, Metric::Visibility), unit: percent_of(pair), cell: Box::new(cell) }
+    }
+
+    fn of_equal_counts(pair: PresetPair) -> Self {
+        let cell = move |model: &ModelReport| {
+            let Some(improvement) = model.improvement(pair) else { return dash() };
+            let of = model.run(pair.0, Metric::Visibility).map_or(0, |run| run.shared_levels().count());
+            let gain = improvement.less_error_at_equal_counts.map_or_else(dash, percent);
+            format!("{gain}, {} of {of}", improvement.equal_counts)
+        };
+        Self { head: "at equal counts, levels".to_owned(), unit: percent_of(pair), cell: Box::new(cell) }
+    }
+}
+
+impl ModelReport {
+    /// Errors level by level, by simplifier, and how many triangles QB takes for VG's image error. A level that has not the
+    /// triangles that were asked for says how many it has.
+    #[must_use]
+    pub fn level_table(&self) -> Table {
+        let runs: Vec<&RunFinding> = RUNS.iter().filter_map(|&(preset, metric)| self.run(preset, metric)).collect();
+        let names = || runs.iter().map(|run| short(run.preset, run.metric));
+        let equal = self.improvements.iter().map(|i| {
+            let [vg, qb] = [(i.visibility, Metric::Visibility), (i.quadric, Metric::Quadric)].map(|(p, m)| short(p, m));
+            format!("{qb} like {vg}")
+        });
+        let heads = ["triangles".to_owned()].into_iter().chain(names()).chain(equal).chain(names());
+        let unit = |unit: &'static str, columns: usize| std::iter::repeat_n(unit, columns);
+        let units = unit("", 1).chain(unit("grey levels", runs.len()));
+        let units = units.chain(unit("triangles", self.improvements.len())).chain(unit("% of diagonal", runs.len()));
+        let empty = Table::new(heads).units(units);
+        let rows = runs.first().map_or(0, |run| run.levels.len());
+        (0..rows).fold(empty, |table, row| table.row(self.level_row(&runs, row)))
+    }
+
+    fn level_row(&self, runs: &[&RunFinding], row: usize) -> Vec<String> {
+        let levels: Vec<&LevelFinding> = runs.iter().filter_map(|run| run.levels.get(row)).collect();
+        let image = |level: &&LevelFinding| match level.is_as_asked() {
+            true => significant(level.errors.image_rmse),
+            false => format!("{} with {}", significant(level.errors.image_rmse), thousands(level.triangles as u64)),
+        };
+        let equal = self.improvements.iter().map(|i| i.equal_error.get(row).map_or_else(dash, triangles));
+        let geometric = |level: &&LevelFinding| significant(level.errors.geometric_rms);
+        let asked = levels.first().map_or_else(dash, |level| asked(level));
+        let cells = levels.iter().map(image).chain(equal).chain(levels.iter().map(geometric));
+        std::iter::once(asked).chain(cells).collect()
+    }
+}
+
+/// `1,724 (1.56 %)`, or `15,000` for a count that the paper names.
+fn asked(level: &LevelFinding) -> String {
+    let share = level.share.map(|share| format!("{} %", significant(100.0 * share)));
+    beside(thousands(level.asked as u64), share)
+}
+
+fn triangles(equal: &EqualError) -> String {
+    match equal.quadric {
+        QuadricCount::About(n) => thousands(n as u64),
+        QuadricCount::MoreThan(n) => format!("> {}", thousands(n as u64)),
+        QuadricCount::AtMost(n) => format!("≤ {}", thousands(n as u64)),
+    }
+}
+
+/// What table 2 of the paper says of its own six models, in the columns of table 3.
+fn printed_row(presets: &[Preset]) -> Vec<String> {
+    let printed: Vec<(f64, f64)> =
+        paper::MODELS.iter().filter_map(|m| m.table2).map(|row| (row.visibility, row.less_error)).collect();
+    let (visibility, gain): (Vec<f64>, Vec<f64>) = printed.iter().copied().unzip();
+    let row = ["as printed in the paper", "seven"].map(str::to_owned);
+    let means = [
+        MeanImprovement::of(&printed, |_| true),
+        MeanImprovement::of(&printed, |v| v < HALF),
+        MeanImprovement::of(&printed, |v| v >= HALF),
+    ];
+    let printed = rank(spearman(&visibility, &gain));
+    let ranks = presets.iter().map(|&preset| if preset == Preset::Paper { printed.clone() } else { dash() });
+    row.into_iter().chain(means.map(mean)).chain(ranks).collect()
+}
+
+fn means(summary: &ImprovementSummary) -> [String; 5] {
+    let vg = short(summary.visibility, Metric::Visibility);
+    let levels = match summary.levels {
+        Levels::All => "all",
+        Levels::EqualCounts => "equal counts",
+    };
+    let [all, below, from] = [summary.all, summary.below_half, summary.from_half].map(mean);
+    [format!("{vg}, {}", percent_of((summary.visibility, summary.quadric))), levels.to_owned(), all, below, from]
+}
+
+/// `35.1 (12)`
+fn mean(mean: MeanImprovement) -> String {
+    mean.less_error.map_or_else(dash, |gain| format!("{} ({})", percent(gain), mean.models))
+}
+
+fn rank(rank: Option<f64>) -> String {
+    rank.map_or_else(dash, |rank| format!("{rank:.2}"))
+}
+
+/// Three digits that matter.
+fn significant(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let before = libm::floor(libm::log10(value.abs())) as i32;
+    let behind = usize::try_from(2 - before).unwrap_or(0);
+    format!("{value:.behind$}")
+}
+
+fn printed(model: &ModelReport) -> Option<paper::Table2Row> {
+    model.stand.model().and_then(|paper| paper.table2)
 }
 
 fn dash() -> String {
@@ -118,132 +237,4 @@ fn beside(ours: String, printed: Option<String>) -> String {
 /// As the paper prints times: minutes and seconds.
 fn minutes(seconds: u32) -> String {
     format!("{}:{:02}", seconds / 60, seconds % 60)
-}
-
-#[derive(Serialize)]
-struct ModelRow<'a> {
-    model: &'a str,
-    triangles: usize,
-    stands_for: Option<&'a str>,
-    preset: &'a str,
-    visibility: f64,
-    never_seen: usize,
-    measure_seconds: f64,
-    qb_seconds: Option<f64>,
-    vg_seconds: Option<f64>,
-    hidden_deleted: Option<usize>,
-    less_error_percent: Option<f64>,
-    less_error_than_qb_of_same_preset_percent: Option<f64>,
-    paper_triangles: Option<usize>,
-    paper_visibility: Option<f64>,
-    paper_measure_seconds: Option<u32>,
-    paper_simplify_seconds: Option<u32>,
-    paper_less_error_percent: Option<f64>,
-}
-
-impl<'a> ModelRow<'a> {
-    fn of(model: &'a ModelReport, preset: Preset) -> Option<Self> {
-        let look = model.look(preset)?;
-        let printed = model.stand.model();
-        let run = |metric| model.run(preset, metric);
-        Some(Self {
-            model: &model.findings.name,
-            triangles: model.findings.triangles,
-            stands_for: printed.map(|p| p.name),
-            preset: preset.name(),
-            visibility: look.visibility,
-            never_seen: look.never_seen,
-            measure_seconds: look.seconds,
-            qb_seconds: run(Metric::Quadric).map(|run| run.seconds),
-            vg_seconds: run(Metric::Visibility).map(|run| run.seconds),
-            hidden_deleted: run(Metric::Visibility).map(|run| run.hidden_deleted),
-            less_error_percent: model.less_error(preset, Preset::Paper),
-            less_error_than_qb_of_same_preset_percent: model.less_error(preset, preset),
-            paper_triangles: printed.map(|p| p.triangles),
-            paper_visibility: printed.and_then(|p| p.visibility()),
-            paper_measure_seconds: printed.and_then(|p| p.measure_seconds()),
-            paper_simplify_seconds: printed.and_then(|p| p.table2).map(|row| row.simplify_seconds),
-            paper_less_error_percent: printed.and_then(|p| p.table2).map(|row| row.less_error),
-        })
-    }
-}
-
-#[derive(Serialize)]
-struct LevelRow<'a> {
-    model: &'a str,
-    preset: &'a str,
-    metric: &'a str,
-    share: Option<f64>,
-    asked: usize,
-    triangles: usize,
-    image_rms: f64,
-    image_rmse: f64,
-    fixed_light_rmse: f64,
-    smooth_rmse: f64,
-    ssim: f64,
-    silhouette_xor: f64,
-    depth_rms_percent: Option<f64>,
-    geometric_mean_percent: f64,
-    geometric_rms_percent: f64,
-    geometric_max_percent: f64,
-    visible_rms_percent: Option<f64>,
-    hidden_rms_percent: Option<f64>,
-    weighted_rms_percent: Option<f64>,
-    flipped: usize,
-    degenerate: usize,
-    new_non_manifold_edges: usize,
-}
-
-impl<'a> LevelRow<'a> {
-    fn of(model: &'a ModelReport) -> impl Iterator<Item = Self> {
-        let levels = model.findings.runs.iter().flat_map(|run| run.levels.iter().map(move |level| (run, level)));
-        levels.map(|(run, level)| Self {
-            model: &model.findings.name,
-            preset: run.preset.name(),
-            metric: run.metric.name(),
-            share: level.share,
-            asked: level.asked,
-            triangles: level.triangles,
-            image_rms: level.errors.image_rms,
-            image_rmse: level.errors.image_rmse,
-            fixed_light_rmse: level.errors.fixed_light.image_rmse,
-            smooth_rmse: level.errors.smooth.image_rmse,
-            ssim: level.errors.ssim,
-            silhouette_xor: level.errors.silhouette_xor,
-            depth_rms_percent: level.errors.depth_rms,
-            geometric_mean_percent: level.errors.geometric_mean,
-            geometric_rms_percent: level.errors.geometric_rms,
-            geometric_max_percent: level.errors.geometric_max,
-            visible_rms_percent: level.errors.visible_rms,
-            hidden_rms_percent: level.errors.hidden_rms,
-            weighted_rms_percent: level.errors.weighted_rms,
-            flipped: level.errors.quality.flipped,
-            degenerate: level.errors.quality.degenerate,
-            new_non_manifold_edges: level.errors.quality.new_non_manifold_edges,
-        })
-    }
-}
-
-#[derive(Serialize)]
-struct ConvergenceRow<'a> {
-    model: &'a str,
-    resolution: u32,
-    cameras: usize,
-    weights: &'a str,
-    against_4098: Option<f64>,
-    against_spiral: f64,
-}
-
-impl<'a> ConvergenceRow<'a> {
-    fn of(model: &'a ModelReport) -> impl Iterator<Item = Self> {
-        let of_all = model.findings.convergence.iter();
-        of_all.flat_map(|all| all.errors.iter().map(move |e| (all.resolution, e))).map(|(resolution, e)| Self {
-            model: &model.findings.name,
-            resolution,
-            cameras: e.cameras,
-            weights: e.weights.name(),
-            against_4098: e.against_4098,
-            against_spiral: e.against_reference,
-        })
-    }
 }

@@ -6,9 +6,11 @@ use std::path::Path;
 use super::ZtRequest;
 use super::plots::Plot;
 use super::report::{ModelReport, ZtReport};
+use super::words;
 use crate::error::{Error, Result};
 use crate::io::write_atomic;
 use crate::report::outline::outline_picture;
+use crate::report::table::Table;
 use crate::visibility::outline::Outline;
 
 /// Points along the outline of figure 1, and cameras around it: a pixel or more each.
@@ -31,13 +33,31 @@ impl ZtReport {
         let outline = Outline::harbour();
         let picture = outline_picture(&outline, &outline.diagram(OUTLINE_SAMPLES, OUTLINE_CAMERAS));
         write("outline.png", &|out| picture.write_png(out))?;
-        write("tables.md", &|out| write!(out, "{}\n{}", self.table1().to_markdown(), self.table2().to_markdown()))?;
+        write("tables.md", &|out| out.write_all(self.to_markdown(request).as_bytes()))?;
         let plots = self.plots(&request.output)?;
         for plot in &plots {
             write(&plot.file, &|out| out.write_all(plot.svg.as_bytes()))?;
         }
         let html = self.page(request, &plots)?.to_html()?;
         write("report.html", &|out| out.write_all(html.as_bytes()))
+    }
+
+    /// All tables as Markdown, with the words that belong to them.
+    fn to_markdown(&self, request: &ZtRequest) -> String {
+        let part =
+            |heading: &str, text: &str, table: &Table| format!("## {heading}\n\n{text}\n\n{}\n", table.to_markdown());
+        let of_model = |model: &ModelReport| part(&model.findings.name, &model.remarks(), &model.level_table());
+        let notes = self.notes(request).into_iter().map(|note| format!("- {note}\n"));
+        [
+            format!("# Visibility-guided simplification\n\n{}\n\n", words::SUBTITLE),
+            part("Table 1: visibility", words::TABLE1, &self.table1()),
+            part("Table 2: less image error", words::TABLE2, &self.table2()),
+            part("Who gains", words::GAINS, &self.gains_table()),
+            format!("# Errors by level\n\n{}\n\n", words::LEVELS),
+            self.models.iter().map(of_model).collect(),
+            format!("## Notes\n\n{}", notes.collect::<String>()),
+        ]
+        .concat()
     }
 
     fn plots(&self, directory: &Path) -> Result<Vec<Plot>> {

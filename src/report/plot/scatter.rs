@@ -1,6 +1,7 @@
 //! Two numbers of several models: where each stands, by name.
 
 use std::io;
+use std::ops::Range;
 
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
@@ -8,10 +9,11 @@ use plotters::prelude::*;
 use super::{Drawn, GRID, PAIR, plain, svg_of};
 use crate::report::rank::spearman;
 
-/// Points with names over linear axes, in one or several groups; the title tells each group's rank correlation.
+/// Points with names over linear axes, in one or several groups. A line above tells each group's rank correlation, in its
+/// colour: the legend. Points of the same name are joined, and named at the last of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ScatterPlot {
-    /// Above it; the correlations follow in a second line.
+    /// Above it; the correlations follow.
     pub title: String,
     /// What the horizontal axis measures, with its unit.
     pub x: String,
@@ -42,9 +44,11 @@ pub struct NamedPoint {
 }
 
 /// Pixels of the plot.
-const SIZE: (u32, u32) = (820, 600);
+const SIZE: (u32, u32) = (1000, 680);
 /// Pixels of a name's letters.
 const LETTERS: u32 = 13;
+/// Lines between points of one name.
+const JOIN: RGBColor = RGBColor(190, 190, 190);
 
 type Chart<'a, B> = ChartContext<'a, B, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
@@ -55,8 +59,10 @@ impl ScatterPlot {
     /// What the drawing library says.
     pub fn to_svg(&self) -> io::Result<String> {
         svg_of(SIZE, |area| {
-            let area =
-                area.titled(&self.title, ("sans-serif", 18))?.titled(&self.correlations(), ("sans-serif", 15))?;
+            let mut area = area.titled(&self.title, ("sans-serif", 18))?;
+            for (group, colour) in self.groups.iter().zip(PAIR.iter().cycle()) {
+                area = area.titled(&self.correlation(group), ("sans-serif", 15).into_font().color(colour))?;
+            }
             let [x, y] = [range(self.values(|p| p.x)), range(self.values(|p| p.y))];
             let mut chart = ChartBuilder::on(&area)
                 .margin(14)
@@ -81,32 +87,24 @@ impl ScatterPlot {
     }
 
     fn draw_points<'a, B: DrawingBackend + 'a>(&self, chart: &mut Chart<'a, B>) -> Drawn<B> {
-        for (group, colour) in self.groups.iter().zip(PAIR.iter().cycle()) {
-            let points = group.points.iter().filter(|p| p.is_finite());
-            chart
-                .draw_series(points.map(|p| Circle::new((p.x, p.y), 4, colour.filled())))?
-                .label(&group.name)
-                .legend(|at| Circle::new((at.0 + 10, at.1), 4, colour.filled()));
-        }
         let points: Vec<(&NamedPoint, RGBColor)> = self.coloured_points();
+        let last = |i: &usize| points[i + 1..].iter().all(|(later, _)| later.name != points[*i].0.name);
+        let named: Vec<usize> = (0..points.len()).filter(last).collect();
+        for &i in &named {
+            let same = points.iter().filter(|(point, _)| point.name == points[i].0.name);
+            chart.draw_series([PathElement::new(same.map(|(p, _)| (p.x, p.y)).collect::<Vec<_>>(), JOIN)])?;
+        }
+        chart.draw_series(points.iter().map(|(p, colour)| Circle::new((p.x, p.y), 4, colour.filled())))?;
         let pixels: Vec<(i32, i32)> = points.iter().map(|(p, _)| chart.backend_coord(&(p.x, p.y))).collect();
         let area = chart.plotting_area().strip_coord_spec();
-        let (ranges, names) = (area.get_pixel_range(), points.iter().map(|(p, _)| p.name.as_str()));
-        let boxes = place_names(&pixels, &names.collect::<Vec<_>>(), [ranges.0.end, ranges.1.end]);
-        for ((point, colour), at) in points.iter().zip(boxes) {
+        let ranges = area.get_pixel_range();
+        let names: Vec<(usize, &str)> = named.iter().map(|&i| (i, points[i].0.name.as_str())).collect();
+        let places = place_names(&pixels, &names, [ranges.0.clone(), ranges.1.clone()]);
+        for ((i, name), at) in names.iter().zip(places) {
             let at = (at.left - ranges.0.start, at.top - ranges.1.start);
-            area.draw(&Text::new(point.name.clone(), at, ("sans-serif", LETTERS).into_font().color(colour)))?;
+            area.draw(&Text::new((*name).to_owned(), at, ("sans-serif", LETTERS).into_font().color(&points[*i].1)))?;
         }
-        if self.groups.len() < 2 {
-            return Ok(());
-        }
-        chart
-            .configure_series_labels()
-            .position(SeriesLabelPosition::UpperRight)
-            .label_font(("sans-serif", 14))
-            .background_style(WHITE.mix(0.85))
-            .border_style(RGBColor(200, 200, 200))
-            .draw()
+        Ok(())
     }
 
     /// All points that can be shown, with the colours of their groups.
@@ -119,17 +117,12 @@ impl ScatterPlot {
         self.coloured_points().into_iter().map(|(p, _)| value(p)).collect()
     }
 
-    /// `Spearman's rank correlation: paper −0.71 (7 models), best −0.86 (7 models)`.
-    fn correlations(&self) -> String {
-        let of = |group: &ScatterGroup| {
-            let points: Vec<&NamedPoint> = group.points.iter().filter(|p| p.is_finite()).collect();
-            let [xs, ys] =
-                [|p: &&NamedPoint| p.x, |p: &&NamedPoint| p.y].map(|f| points.iter().map(f).collect::<Vec<_>>());
-            let value = spearman(&xs, &ys).map_or("unknown".to_owned(), |r| format!("{r:.2}").replace('-', "−"));
-            let name = if self.groups.len() > 1 { format!("{} ", group.name) } else { String::new() };
-            format!("{name}{value} ({} models)", points.len())
-        };
-        format!("Spearman's rank correlation: {}", self.groups.iter().map(of).collect::<Vec<_>>().join(", "))
+    /// `● paper: rank correlation −0.71 (7 models)`
+    fn correlation(&self, group: &ScatterGroup) -> String {
+        let points: Vec<&NamedPoint> = group.points.iter().filter(|p| p.is_finite()).collect();
+        let [xs, ys] = [|p: &&NamedPoint| p.x, |p: &&NamedPoint| p.y].map(|f| points.iter().map(f).collect::<Vec<_>>());
+        let value = spearman(&xs, &ys).map_or("unknown".to_owned(), |r| format!("{r:.2}").replace('-', "−"));
+        format!("● {}: Spearman's rank correlation {value} ({} models)", group.name, points.len())
     }
 }
 
@@ -169,22 +162,29 @@ impl Place {
     }
 }
 
-/// A place for each name beside its point: right, left, above, below, or a line lower and so on, whichever is free first.
-fn place_names(points: &[(i32, i32)], names: &[&str], [right, bottom]: [i32; 2]) -> Vec<Place> {
+/// Lines that a name may stand above or below its point.
+const FARTHEST: i32 = 6;
+
+/// A place for each name of a point, given by its place among `points`: right, left, above or below, whichever is free first,
+/// else farther up or down; right where nothing is free.
+fn place_names(points: &[(i32, i32)], names: &[(usize, &str)], [columns, rows]: [Range<i32>; 2]) -> Vec<Place> {
     let mut taken: Vec<Place> = points.iter().map(|&at| Place::disc(at)).collect();
-    for (&(x, y), name) in points.iter().zip(names) {
+    for &(i, name) in names {
+        let (x, y) = points[i];
         let height = LETTERS as i32 + 2;
-        // Sans-serif letters are about half as wide as high.
-        let width = (0.55 * f64::from(LETTERS) * name.chars().count() as f64) as i32;
-        let beside = |dy: i32| [(x + 8, y + dy), (x - 8 - width, y + dy)];
-        let spots = [0, -height, height, -2 * height, 2 * height].into_iter().flat_map(|dy| beside(dy - height / 2));
-        let places = spots.map(|(left, top)| Place { left, top, width, height });
+        // Sans-serif letters are little more than half as wide as high.
+        let width = (0.57 * f64::from(LETTERS) * name.chars().count() as f64) as i32;
+        let at = |left: i32, line: i32| Place { left, top: y + line * height / 2 - height / 2, width, height };
+        let around = |line: i32| [at(x + 8, line), at(x - 8 - width, line), at(x - width / 2, line)];
+        let lines = (0..=2 * FARTHEST).flat_map(|line| [-line, line]);
         let is_free = |place: &Place| {
-            let is_inside = place.left + place.width <= right && place.top + place.height <= bottom;
+            let is_inside = place.left >= columns.start
+                && place.left + place.width <= columns.end
+                && place.top >= rows.start
+                && place.top + place.height <= rows.end;
             is_inside && !taken.iter().any(|other| other.overlaps(place))
         };
-        let first = Place { left: x + 8, top: y - height / 2, width, height };
-        let found = places.into_iter().find(is_free).unwrap_or(first);
+        let found = lines.flat_map(around).find(is_free).unwrap_or(at(x + 8, 0));
         taken.push(found);
     }
     taken.split_off(points.len())
@@ -215,32 +215,42 @@ mod tests {
     #[test]
     fn names_axes_and_the_correlation_are_in_the_document() {
         let svg = plot(vec![table_2()]).to_svg().unwrap();
-        for text in ["gain", "V(M)", "less error, %", "Locomotive", "rank correlation: −0.94 (6 models)"] {
+        for text in ["gain", "V(M)", "less error, %", "Locomotive", "rank correlation −0.94 (6 models)"] {
             assert!(svg.contains(text), "{text}");
         }
         assert_eq!(svg.matches("<circle").count(), 6);
-        assert!(!svg.contains("Zhang"), "one group needs no legend");
     }
 
     #[test]
     fn each_group_has_its_own_correlation() {
         let rising = group("best", &[("a", 0.0, 1.0), ("b", 1.0, 2.0), ("c", 2.0, 3.0), ("d", f64::NAN, 0.0)]);
         let svg = plot(vec![rising, group("one", &[("e", 0.5, -1.0)])]).to_svg().unwrap();
-        assert!(svg.contains("best 1.00 (3 models), one unknown (1 models)"));
-        // Four points and two marks in the legend.
-        assert_eq!(svg.matches("<circle").count(), 6);
+        for text in ["rank correlation 1.00 (3 models)", "rank correlation unknown (1 models)"] {
+            assert!(svg.contains(text), "{text}");
+        }
+        assert_eq!(svg.matches("<circle").count(), 4);
+    }
+
+    #[test]
+    fn a_model_in_two_groups_is_named_once() {
+        let svg =
+            plot(vec![group("paper", &[("cow", 0.5, 1.0)]), group("best", &[("cow", 0.4, 2.0)])]).to_svg().unwrap();
+        assert_eq!(svg.lines().filter(|line| *line == "cow").count(), 1);
+        assert_eq!(svg.matches("<circle").count(), 2);
     }
 
     #[test]
     fn names_stand_clear_of_points_and_of_each_other() {
-        // Five points in a heap, as models of one kind are.
-        let points = [(100, 100), (110, 102), (120, 104), (100, 110), (300, 8)];
-        let names = ["engine", "hand", "part", "skull", "bunny at the edge"];
-        let places = place_names(&points, &names, [320, 400]);
+        // A heap of points, as models of one kind are, the last two close to the edges.
+        let heap = (0..18).map(|i| (100 + 7 * (i % 5), 100 + 5 * (i % 4)));
+        let points: Vec<(i32, i32)> = heap.chain([(300, 8), (4, 398)]).collect();
+        let names = (0..points.len()).map(|i| (i, "some model")).collect::<Vec<_>>();
+        let places = place_names(&points, &names, [0..320, 0..400]);
         for (i, place) in places.iter().enumerate() {
-            assert!(points.iter().all(|&at| !Place::disc(at).overlaps(place)), "{} lies on a point", names[i]);
-            assert!(places[..i].iter().all(|other| !other.overlaps(place)), "{} lies on a name", names[i]);
-            assert!(place.left + place.width <= 320);
+            assert!(points.iter().all(|&at| !Place::disc(at).overlaps(place)), "{i} lies on a point");
+            assert!(places[..i].iter().all(|other| !other.overlaps(place)), "{i} lies on a name");
+            assert!(place.left >= 0 && place.left + place.width <= 320);
+            assert!(place.top >= 0 && place.top + place.height <= 400);
         }
     }
 

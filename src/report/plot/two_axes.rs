@@ -7,7 +7,7 @@ use plotters::chart::DualCoordChartContext;
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 use plotters::prelude::*;
 
-use super::{Drawn, GRID, PAIR, plain, svg_of};
+use super::{Drawn, GRID, LEGEND_LINE, MOST_LEGEND, PAIR, plain, svg_of};
 use crate::report::table::thousands;
 
 /// Image error against the left axis, geometric error against the right one, over the number of triangles.
@@ -40,7 +40,9 @@ pub struct MethodCurves {
 }
 
 /// Pixels of the plot.
-const SIZE: (u32, u32) = (820, 600);
+const SIZE: (u32, u32) = (640, 500);
+/// Of it, between the axes.
+const INNER_HEIGHT: f64 = 400.0;
 
 /// Room between a band and what is next to it, in decades.
 const GAP: f64 = 0.12;
@@ -151,8 +153,9 @@ impl Bands {
             ends(&plot.methods.iter().flat_map(|m| places(curve(m))).map(|(_, y)| y).collect::<Vec<_>>())
         };
         let (left, right) = (band(|m| &m.left), band(|m| &m.right));
-        let head = 0.25 * (left.1 - left.0 + right.1 - right.0);
-        Self { left, right, head }
+        let curves = left.1 - left.0 + right.1 - right.0 + 3.0 * GAP;
+        let legend = (LEGEND_LINE * (2 * plot.methods.len() + 1) as f64 / INNER_HEIGHT).min(MOST_LEGEND);
+        Self { left, right, head: curves * legend / (1.0 - legend) }
     }
 
     /// Decades from top to bottom.
@@ -209,7 +212,7 @@ fn draw_method<'a, B: DrawingBackend + 'a>(
         .legend(move |at| EmptyElement::at(at) + stroke(0, 20, line) + Circle::new((10, 0), 4, colour.filled()));
     chart.draw_series(left.into_iter().map(|at| Circle::new(at, 4, colour.filled())))?;
     chart
-        .draw_secondary_series(DashedLineSeries::new(right.clone(), 6, 4, line))?
+        .draw_secondary_series(DashedLineSeries::new(right.clone(), 10, 6, line))?
         .label(format!("{}, right axis", method.name))
         .legend(move |at| {
             EmptyElement::at(at) + stroke(0, 6, line) + stroke(14, 20, line) + Circle::new((10, 0), 4, line)
