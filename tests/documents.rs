@@ -13,8 +13,16 @@ fn local_links(text: &str) -> Vec<&str> {
 #[test]
 fn every_link_to_a_file_finds_it() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let documents =
-        ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/json.md", "data/README.md", "docs/reproduction.md", "docs/results/rivals.md"];
+    let documents = [
+        "README.md",
+        "ARCHITECTURE.md",
+        "CONTRIBUTING.md",
+        "CHANGELOG.md",
+        "docs/json.md",
+        "data/README.md",
+        "docs/reproduction.md",
+        "docs/results/rivals.md",
+    ];
     let mut checked = 0;
     for document in documents {
         let text = std::fs::read_to_string(root.join(document)).unwrap();
