@@ -173,7 +173,7 @@ impl Show<'_> {
             cells.extend(self.columns.iter().map(|column| column.cells[number].clone()));
             rows.push(cells);
         }
-        Table { heads, rows }
+        Table { heads, rows, ..Table::default() }
     }
 
     fn viewer(&self, up: glam::DVec3, progress: &dyn Progress) -> Result<Section> {
