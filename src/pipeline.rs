@@ -36,7 +36,7 @@ pub use measure::{
     ErrorSummary, MeasureReport, MeasureRequest, MeasureSeconds, RescueSummary, VisibilitySummary, measure_file,
 };
 pub use observation::cache_is_file;
-pub use page::PageRequest;
+pub use page::{PageRequest, shown_names};
 pub use preset::{Preset, VISIBILITY_POWER};
 pub use render::{RenderRequest, Style, render_file};
 pub use side_by_side::{ColumnOrder, Portrait, SideBySide};

@@ -54,7 +54,8 @@ fn a_browser_shows_the_page_and_turns_its_models() {
         assert!(view["drawn"].as_f64().unwrap() > 0.1 && view["colours"].as_u64().unwrap() > 100, "{view}");
     }
     assert_eq!(views("reset"), first, "resetting undoes a drag");
-    for state in ["dragged", "arrow", "plain", "edges"] {
+    assert_eq!(views("upAgain"), first, "the axis that was up at first gives the first view again");
+    for state in ["dragged", "arrow", "plain", "edges", "up", "upTurned"] {
         let changed = views(state).iter().zip(&first).filter(|(now, then)| now["sum"] != then["sum"]).count();
         assert_eq!(changed, 2, "{state} changes both views");
     }
@@ -63,6 +64,13 @@ fn a_browser_shows_the_page_and_turns_its_models() {
     let paper = &found["paper"];
     assert_ne!(paper["light"], paper["dark"]);
     assert_eq!(paper["light"], paper["chosen"], "the switch overrides what the system prefers");
+
+    let phone = &found["phone"];
+    assert_eq!(phone["wider"], 0, "nothing makes a phone's page wider than the phone");
+    assert_eq!((&phone["onView"]["turned"], &phone["onView"]["scrolled"]), (&2.into(), &0.into()), "a finger turns");
+    assert_eq!(phone["beside"]["turned"], 0);
+    assert!(phone["beside"]["scrolled"].as_f64().unwrap() > 0.0, "beside the views a finger scrolls: {phone}");
+    assert!(phone["tallest"].as_f64().unwrap() <= 0.7, "there is room for it: {phone}");
 }
 
 #[test]
@@ -102,7 +110,88 @@ fn compare_puts_every_mesh_on_one_page() {
     assert_eq!(object["page"], "c.html");
     let html = fs::read_to_string(folder.path().join("c.html")).unwrap();
     assert_eq!(html.matches("<canvas").count(), 3);
-    assert!(html.contains("Visible distance") && !html.contains("<b>") && !html.contains("<img src=x"));
+    assert!(!html.contains("<b>") && !html.contains("<img src=x"));
+}
+
+#[test]
+fn compare_shows_all_that_it_prints_marks_the_best_and_says_who_wins() {
+    let folder = reported();
+    let cube = shapes::cuboid(glam::DVec3::ONE, 1);
+    io::write(&folder.path().join("cube.ply"), &cube, &Attributes::default(), &WriteOptions::default()).unwrap();
+    let compare = |meshes: &[&str]| {
+        let more = ["--surface-samples", "1000", "--report", "c.html", "--force"];
+        let ended = outsight(folder.path(), &[&["compare"], meshes, &more, &SMALL].concat()).success();
+        let printed = String::from_utf8(ended.get_output().stdout.clone()).unwrap();
+        (printed, fs::read_to_string(folder.path().join("c.html")).unwrap())
+    };
+    let (printed, html) = compare(&[HOSTILE, "<b>small.ply", "cube.ply"]);
+    let words = printed.lines().map(|line| line.split_whitespace().collect::<Vec<_>>());
+    let rows: Vec<Vec<&str>> = words.filter(|words| words.first() == Some(&"<b>small.ply")).collect();
+    assert_eq!(rows.iter().map(Vec::len).collect::<Vec<_>>(), [8, 9, 7], "three tables, one with a unit: {printed}");
+    for number in rows.iter().flat_map(|row| &row[1..]).filter(|word| **word != "%") {
+        assert!(html.contains(&format!(">{number}")), "{number} is printed and not on the page");
+    }
+    // The smaller gearbox is nearer to the gearbox than a cube is, by every measure of pictures.
+    let small: f64 = rows[0][2].parse().unwrap();
+    let verdict = format!("&lt;b&gt;small.ply has the least image error: {small:.2} grey levels, ");
+    assert!(html.contains(&verdict) && html.contains(" % less than cube.ply, with "), "{verdict}");
+    assert!(html.contains(&format!("<td><strong>{small:.3}</strong></td>")));
+    let (_, alone) = compare(&["cube.ply", "cube.ply"]);
+    assert!(!alone.contains("<td><strong>") && !alone.contains("least image error"), "nobody to win against");
+}
+
+#[test]
+fn files_of_one_name_are_told_apart_by_their_folders_and_no_others_show() {
+    let folder = reported();
+    for name in ["qb", "vg"] {
+        fs::create_dir(folder.path().join(name)).unwrap();
+        fs::copy(folder.path().join("<b>small.ply"), folder.path().join(name).join("x.ply")).unwrap();
+    }
+    let whole = folder.path().join("vg/x.ply").display().to_string();
+    let arguments = ["compare", HOSTILE, "qb/x.ply", &whole, "--surface-samples", "1000", "--report", "c.html"];
+    outsight(folder.path(), &[&arguments[..], &SMALL].concat()).success();
+    let html = fs::read_to_string(folder.path().join("c.html")).unwrap();
+    for text in ["Image error of qb/x.ply", "Image error of vg/x.ply", "vg/x.ply: difference from below"] {
+        assert!(html.contains(text), "{text}");
+    }
+    assert!(html.contains("qb/x.ply vg/x.ply --surface-samples 1000 --report c.html --cameras 18"), "how it was made");
+    assert!(!html.contains(&folder.path().display().to_string()), "folders are nobody's business");
+}
+
+#[test]
+fn several_levels_have_a_plot_of_their_errors() {
+    let folder = reported();
+    let simplify = |lods: &str| {
+        let arguments = ["simplify", HOSTILE, "-o", "x.ply", "--lods", lods, "--report", "l.html", "--force"];
+        outsight(folder.path(), &[&arguments[..], &SMALL].concat()).success();
+        let html = fs::read_to_string(folder.path().join("l.html")).unwrap();
+        html.contains("Error over triangles")
+    };
+    assert!(simplify("0.5,0.2"));
+    assert!(!simplify("0.5"), "a point is no curve");
+}
+
+#[test]
+fn convergence_has_a_page_with_its_plots_and_numbers() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("b")).unwrap();
+    for file in ["t.off", "b/t.off"] {
+        fs::write(folder.path().join(file), "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n").unwrap();
+    }
+    let study = ["study", "convergence", "t.off", "b/t.off", "-o", "s", "--against", "fibonacci", "--resolution", "64"];
+    let ended = outsight(folder.path(), &[&study[..], &["--report", "r.html", "--json"]].concat()).success();
+    let object: Value = serde_json::from_slice(&ended.get_output().stdout).unwrap();
+    assert_eq!(object["page"], "r.html");
+    let html = fs::read_to_string(folder.path().join("r.html")).unwrap();
+    for error in object["meshes"][1]["errors"].as_array().unwrap() {
+        let shown = format!("<td>{:.5}</td>", error["against_reference"].as_f64().unwrap());
+        assert!(html.contains(&shown), "{shown}");
+    }
+    assert!(html.contains("t.off, b/t.off, convergence of visibility"));
+    assert_eq!(html.matches("data:image/svg+xml").count(), 2);
+    let found: Value = serde_json::from_str(&node::node("page.mjs", &[&folder.path().join("r.html")])).unwrap();
+    assert_eq!((&found["requests"], &found["console"]), (&serde_json::json!([]), &serde_json::json!([])));
+    assert_eq!((&found["broken"], &found["phone"]["wider"]), (&0.into(), &0.into()));
 }
 
 #[test]

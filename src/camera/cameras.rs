@@ -54,7 +54,7 @@ impl CameraPattern {
 
 impl Default for Cameras {
     fn default() -> Self {
-        Self::octahedral(258)
+        Self::octahedral(Self::DEFAULT_COUNT)
     }
 }
 
@@ -63,6 +63,9 @@ impl Default for Cameras {
 const FIRST_SEED: u64 = 1 << 32;
 
 impl Cameras {
+    /// Cameras of the default.
+    pub const DEFAULT_COUNT: usize = 258;
+
     /// So many cameras of the octahedral pattern, all around.
     #[must_use]
     pub fn octahedral(count: usize) -> Self {

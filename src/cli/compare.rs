@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use outsight::eval::geometric::{Distances, MAX_SAMPLES};
-use outsight::pipeline::{CompareReport, CompareRequest, TestReport, compare_files};
+use outsight::eval::geometric::MAX_SAMPLES;
+use outsight::pipeline::{CompareReport, CompareRequest, compare_files};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -17,7 +17,7 @@ use super::in_force;
 use super::outputs::{self, Kind, Planned};
 use super::presets;
 use super::system::peak_mib;
-use super::text::{count, significant, table};
+use super::text::{significant, table};
 use super::watch::Watch;
 
 #[derive(Debug, Args)]
@@ -37,13 +37,13 @@ pub struct Flags {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MAX_SAMPLES))]
     surface_samples: Option<u64>,
     #[command(flatten)]
+    page: PageFlags,
+    #[command(flatten)]
     looking: LookingFlags,
     #[command(flatten)]
     around: OccluderFlags,
     #[command(flatten)]
     cache: CacheFlags,
-    #[command(flatten)]
-    page: PageFlags,
 }
 
 /// The library's report with what only the program knows.
@@ -73,7 +73,7 @@ pub fn run(flags: &Flags, console: &Console) -> Result<(), Failure> {
         cache: flags.cache.place()?,
         sheet: flags.output.clone(),
         up: flags.page.up.up,
-        page: flags.page.request(),
+        page: flags.page.request(&console.command_line),
         force: console.global.force,
     };
     let others = flags.tests.iter().chain(&request.occluders);
@@ -101,69 +101,18 @@ fn text(report: &CompareReport, request: &CompareRequest) -> String {
     let line = |name: &str, path: &Path| format!("{name}: {}\n", path.display());
     let sheet = request.sheet.as_ref().map(|path| line("contact sheet", path)).unwrap_or_default();
     let page = request.page.as_ref().map(|page| line("page", &page.output)).unwrap_or_default();
-    let rows = |row: fn(&TestReport) -> Vec<String>| -> Vec<Vec<String>> {
-        let named = |test: &TestReport| std::iter::once(test.file.display().to_string()).chain(row(test)).collect();
-        report.tests.iter().map(named).collect()
-    };
+    let names: Vec<String> = report.tests.iter().map(|test| test.file.display().to_string()).collect();
+    let [pictures, distances, triangles] =
+        report.tables(&names).map(|t| table(&t.heads.iter().map(String::as_str).collect::<Vec<_>>(), &t.rows));
     format!(
-        "{}image error, root mean square in grey levels (0 to 255): head light on flat triangles, fixed light, \
+        "{pictures}image error, root mean square in grey levels (0 to 255): head light on flat triangles, fixed light, \
          smooth\nshading; SSIM: 1 is alike; outline: pixels per picture in one silhouette only; depth: % of the \
          diagonal\n\n\
-         {}distance in % of the diagonal ({}) of {}: mean, rms, max of the worse direction;\nrms from each mesh to the \
+         {distances}distance in % of the diagonal ({}) of {}: mean, RMS, max of the worse direction;\nRMS from each mesh to the \
          other, and from visible, from hidden and from all surface of REF, weighted by visibility\n\n\
-         {}flipped: against the surface of REF nearest to them, and their share of the area; edges: with three or \
+         {triangles}flipped: against the surface of REF nearest to them, and their share of the area; edges: with three or \
          more\ntriangles, and how many more than REF has\n{sheet}{page}",
-        table(&["pictures", "triangles", "head light", "fixed", "smooth", "SSIM", "outline", "depth"], &rows(pictures)),
-        table(
-            &["distances", "mean", "rms", "max", "REF to test", "test to REF", "visible", "hidden", "weighted"],
-            &rows(distances)
-        ),
         significant(report.diagonal),
         request.reference.display(),
-        table(&["triangles", "flipped", "of area", "degenerate", "edges", "more"], &rows(quality)),
     )
-}
-
-fn pictures(test: &TestReport) -> Vec<String> {
-    vec![
-        count(test.triangles),
-        format!("{:.3}", test.image_rmse),
-        format!("{:.3}", test.fixed_light.image_rmse),
-        format!("{:.3}", test.smooth.image_rmse),
-        optional(Some(test.ssim)),
-        format!("{:.1}", test.silhouette_xor),
-        optional(test.depth),
-    ]
-}
-
-fn distances(test: &TestReport) -> Vec<String> {
-    let error = &test.geometric;
-    let rms = |part: Option<Distances>| part.map(|d| d.rms);
-    let all = [
-        Some(error.mean),
-        Some(error.rms),
-        Some(error.max),
-        Some(error.forward.rms),
-        Some(error.backward.rms),
-        rms(error.visible),
-        rms(error.hidden),
-        error.weighted_rms,
-    ];
-    all.map(optional).to_vec()
-}
-
-fn quality(test: &TestReport) -> Vec<String> {
-    let quality = &test.quality;
-    vec![
-        count(quality.flipped),
-        format!("{:.3} %", 100.0 * quality.flipped_area),
-        count(quality.degenerate),
-        count(quality.non_manifold_edges),
-        count(quality.new_non_manifold_edges),
-    ]
-}
-
-/// Four digits behind the point, or a dash where there is nothing to measure.
-fn optional(value: Option<f64>) -> String {
-    value.map_or("-".to_owned(), |value| format!("{value:.4}"))
 }

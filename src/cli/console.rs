@@ -21,6 +21,8 @@ pub const JSON_SCHEMA: u32 = 1;
 pub struct Console {
     /// What every command was asked.
     pub global: GlobalFlags,
+    /// What was typed, as pages tell it.
+    pub command_line: String,
     display: ProgressDisplay,
     interruptions: Interruptions,
     warnings: Mutex<Vec<String>>,
@@ -36,11 +38,12 @@ struct JsonObject<'a, T: Serialize> {
 }
 
 impl Console {
-    /// The console that the flags ask for.
-    pub fn new(flags: &GlobalFlags) -> Self {
+    /// The console that the flags ask for, which were given in this command line.
+    pub fn new(flags: &GlobalFlags, command_line: String) -> Self {
         let show = if flags.quiet { Show::Never } else { flags.progress };
         Self {
             global: flags.clone(),
+            command_line,
             display: ProgressDisplay::new(show),
             interruptions: Interruptions::new(flags.time_limit),
             warnings: Mutex::default(),
@@ -135,7 +138,7 @@ impl Console {
     #[cfg(test)]
     pub fn silent() -> Self {
         let flags = GlobalFlags { quiet: true, progress: Show::Never, ..GlobalFlags::default() };
-        Self::new(&flags)
+        Self::new(&flags, String::new())
     }
 }
 

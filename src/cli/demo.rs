@@ -111,7 +111,7 @@ pub fn run(_flags: &Flags, console: &Console) -> std::result::Result<(), Failure
     let visibility = pipeline::run_simplify(&visibility, &watch)?;
 
     console.note("comparing both with the original, from 20 cameras that were not used before");
-    let compare = pipeline::compare_files(&compare_request(&files, looking, console.global.seed), &watch)?;
+    let compare = pipeline::compare_files(&compare_request(&files, looking, console), &watch)?;
 
     let image_error_saved = saved(&compare);
     let triangles = measure.triangles;
@@ -184,18 +184,32 @@ fn simplified(input: &Path, output: &Path, metric: Metric, looking: &MeasureOpti
     }
 }
 
-fn compare_request(files: &Files, looking: MeasureOptions, seed: u64) -> CompareRequest {
+/// What `demo` does, command by command, begun with itself.
+fn commands(console: &Console) -> Vec<String> {
+    let [model, seed] = [bundled::NAME, console.command_line.trim_start_matches("outsight demo")];
+    let [quadric, visibility] = ["gearbox-quadric.ply", "gearbox-visibility.ply"];
+    vec![
+        format!("{}   # which is the same as", console.command_line),
+        format!("outsight simplify {model} -o {quadric} -r {RATIO} --metric quadric{seed}"),
+        format!("outsight simplify {model} -o {visibility} -r {RATIO}{seed}"),
+        format!("outsight compare {model} {quadric} {visibility} -o differences.png --report report.html{seed}"),
+    ]
+}
+
+fn compare_request(files: &Files, looking: MeasureOptions, console: &Console) -> CompareRequest {
+    let names = vec!["QB (shape alone)".to_owned(), "VG (shape and visibility)".to_owned()];
+    let page = PageRequest { output: files.page.clone(), up: UP, commands: commands(console), names };
     CompareRequest {
         reference: files.model.clone(),
         tests: vec![files.quadric.clone(), files.visibility.clone()],
         read: ReadOptions::default(),
         samples: None,
-        seed,
+        seed: console.global.seed,
         occluders: Vec::new(),
         cache: None,
         sheet: Some(files.differences.clone()),
         up: UP,
-        page: Some(PageRequest { output: files.page.clone(), up: UP }),
+        page: Some(page),
         measure: looking,
         force: true,
     }

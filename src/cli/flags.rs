@@ -114,9 +114,10 @@ pub struct PageFlags {
 }
 
 impl PageFlags {
-    /// The library's request for these flags.
-    pub fn request(&self) -> Option<PageRequest> {
-        self.page.clone().map(|output| PageRequest { output, up: self.up.up })
+    /// The library's request for these flags, given in this command line.
+    pub fn request(&self, command_line: &str) -> Option<PageRequest> {
+        let commands = vec![command_line.to_owned()];
+        self.page.clone().map(|output| PageRequest { output, up: self.up.up, commands, names: Vec::new() })
     }
 }
 

@@ -92,7 +92,7 @@ fn request(flags: &Flags, console: &Console) -> outsight::Result<MeasureRequest>
         diagram: flags.diagram.clone().map(|output| DiagramRequest { output, fractions: flags.diagram_fractions }),
         colour_map: flags.colour_map.into(),
         cache: flags.cache.place()?,
-        page: flags.page.request(),
+        page: flags.page.request(&console.command_line),
         force: console.global.force,
     })
 }

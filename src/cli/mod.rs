@@ -7,6 +7,7 @@ mod bundled;
 mod cache;
 mod cameras;
 mod collapsing;
+mod command_line;
 mod compare;
 mod completions;
 mod console;
@@ -37,7 +38,7 @@ mod watch;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use console::Console;
 use failure::{Failure, guarded};
@@ -105,8 +106,8 @@ fn hidden_if(flag: clap::Arg, refused: &[&str]) -> clap::Arg {
 /// Runs the program on the process's arguments and says how it ends.
 pub fn main() -> ExitCode {
     failure::report_bugs();
-    match Arguments::try_parse() {
-        Ok(arguments) => ExitCode::from(run(&arguments)),
+    match parsed() {
+        Ok((arguments, command_line)) => ExitCode::from(run(&arguments, command_line)),
         // Help and version come as "errors" that belong on stdout with code 0; a closed pipe there is nobody's fault.
         Err(asked_or_wrong) => {
             let _ = asked_or_wrong.print();
@@ -115,8 +116,16 @@ pub fn main() -> ExitCode {
     }
 }
 
-fn run(arguments: &Arguments) -> u8 {
-    let console = Console::new(&arguments.global);
+/// The process's arguments, and the command line as pages tell it.
+fn parsed() -> Result<(Arguments, String), clap::Error> {
+    let mut command = Arguments::command();
+    let matches = command.try_get_matches_from_mut(std::env::args_os())?;
+    let arguments = Arguments::from_arg_matches(&matches).map_err(|wrong| wrong.format(&mut command))?;
+    Ok((arguments, command_line::shown(&command, &matches)))
+}
+
+fn run(arguments: &Arguments, command_line: String) -> u8 {
+    let console = Console::new(&arguments.global, command_line);
     let outcome = guarded(|| {
         check_names(arguments.global.json)?;
         console.watch_signals()?;

@@ -110,7 +110,7 @@ fn request(flags: &Flags, console: &Console) -> outsight::Result<SimplifyRequest
         levels: levels(flags)?,
         format: flags.output_format.map(Into::into),
         cache: flags.cache.place()?,
-        page: flags.page.request(),
+        page: flags.page.request(&console.command_line),
         force: console.global.force,
     })
 }

@@ -8,7 +8,7 @@ use clap::{Args, Subcommand, ValueEnum};
 use outsight::error::{Error, Result};
 use outsight::io;
 use outsight::pipeline::{
-    ConvergenceError, ConvergenceReport, ConvergenceRequest, IndependentReference, MeshConvergence, study_convergence,
+    ConvergenceReport, ConvergenceRequest, IndependentReference, MeshConvergence, study_convergence,
 };
 use serde::Serialize;
 
@@ -17,9 +17,9 @@ use super::estimate::Task;
 use super::failure::Failure;
 use super::flags::{OccluderFlags, ReadingFlags};
 use super::help;
-use super::outputs;
+use super::outputs::{self, Kind, Planned};
 use super::system::peak_mib;
-use super::text::{count, duration, table};
+use super::text::{count, duration};
 use super::watch::Watch;
 
 #[derive(Debug, Args)]
@@ -45,8 +45,6 @@ struct ConvergenceFlags {
     meshes: Vec<PathBuf>,
     #[command(flatten)]
     reading: ReadingFlags,
-    #[command(flatten)]
-    around: OccluderFlags,
     /// Directory for convergence.json, .csv and .svg; made if it is not there
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
@@ -59,6 +57,11 @@ struct ConvergenceFlags {
     /// Pixels along each image's side, 16 to 16384 [default: by triangles, 480 to 1920]
     #[arg(long, value_name = "W", value_parser = clap::value_parser!(u32).range(16..=16384))]
     resolution: Option<u32>,
+    /// Write a page with the plots and tables too: .html, one file that loads nothing
+    #[arg(long = "report", value_name = "FILE")]
+    page: Option<PathBuf>,
+    #[command(flatten)]
+    around: OccluderFlags,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -93,6 +96,7 @@ struct Object<'a> {
     report: &'a ConvergenceReport,
     peak_mb: Option<f64>,
     occluders: &'a [PathBuf],
+    page: Option<&'a Path>,
 }
 
 /// Runs the study that was asked for.
@@ -110,6 +114,10 @@ fn convergence(flags: &ConvergenceFlags, console: &Console) -> std::result::Resu
     let files = ["convergence.json", "convergence.csv", "convergence.svg"].map(|name| flags.output.join(name));
     files.iter().try_for_each(|file| outputs::check_place_to_be(file, force))?;
     let [json, csv, svg] = files;
+    let inputs: Vec<&Path> = flags.meshes.iter().chain(&flags.around.occluders).map(PathBuf::as_path).collect();
+    if let Some(path) = &flags.page {
+        outputs::check(Planned { path, kind: Kind::Page, format: None }, &inputs, force)?;
+    }
     let request = ConvergenceRequest {
         inputs: flags.meshes.clone(),
         read: flags.reading.options(&console.global),
@@ -120,17 +128,23 @@ fn convergence(flags: &ConvergenceFlags, console: &Console) -> std::result::Resu
     };
     let task = Task::Study { resolution: flags.resolution };
     let report = study_convergence(&request, &Watch::new(console, task))?;
-    let object = Object { report: &report, peak_mb: peak_mib(), occluders: &request.occluders };
+    let object =
+        Object { report: &report, peak_mb: peak_mib(), occluders: &request.occluders, page: flags.page.as_deref() };
     let text_of_json = console.to_json(&object)?;
     let picture = report.plot().to_svg().map_err(|e| Error::Write { path: svg.clone(), message: e.to_string() })?;
     io::write_atomic_in_directory(&json, force, |out| out.write_all(text_of_json.as_bytes()))?;
     io::write_atomic(&csv, force, |out| report.write_csv(out))?;
     io::write_atomic(&svg, force, |out| out.write_all(picture.as_bytes()))?;
-    console.result(&object, &text(&report, &flags.output), true)
+    if let Some(page) = &flags.page {
+        let html = report.page(std::slice::from_ref(&console.command_line))?.to_html()?;
+        io::write_atomic(page, force, |out| out.write_all(html.as_bytes()))?;
+    }
+    let page = flags.page.iter().map(|page| format!("page     {}\n", page.display())).collect::<String>();
+    console.result(&object, &(text(&report, &flags.output) + &page), true)
 }
 
 fn text(report: &ConvergenceReport, directory: &Path) -> String {
-    let tables: String = report.meshes.iter().map(table_of).collect();
+    let tables: String = report.meshes.iter().zip(report.names()).map(|(mesh, name)| table_of(mesh, &name)).collect();
     format!(
         "{tables}mean error of V over the surface, V from 0 to 1\n\
          same pattern: against 4098 octahedral cameras of the same weights\n\
@@ -141,24 +155,13 @@ fn text(report: &ConvergenceReport, directory: &Path) -> String {
     )
 }
 
-fn table_of(mesh: &MeshConvergence) -> String {
-    let cell = |error: Option<f64>| error.map_or("-".to_owned(), |e| format!("{e:.5}"));
-    let row = |pair: &[ConvergenceError]| {
-        let mut cells = vec![pair[0].cameras.to_string()];
-        cells.extend(pair.iter().map(|e| cell(e.against_4098)));
-        cells.extend(pair.iter().map(|e| cell(Some(e.against_reference))));
-        cells
-    };
-    let heads = ["cameras", "same pattern, equal", "same pattern, area", "independent, equal", "independent, area"];
-    // Errors come in pairs of the same cameras: equal weights, then area weights.
-    let rows: Vec<_> = mesh.errors.chunks_exact(2).map(row).collect();
+fn table_of(mesh: &MeshConvergence, name: &str) -> String {
     let known = mesh.reference_error.map_or(String::new(), |e| format!("standard error of the reference: {e:.5}\n"));
     format!(
-        "{}: {} triangles, {} pixels square, {}\n{}{known}\n",
-        mesh.name(),
+        "{name}: {} triangles, {} pixels square, {}\n{}{known}\n",
         count(mesh.triangles),
         mesh.resolution,
         duration(mesh.seconds),
-        table(&heads, &rows),
+        mesh.table(),
     )
 }

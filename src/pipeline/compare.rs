@@ -1,3 +1,5 @@
+mod tables;
+
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
@@ -10,9 +12,10 @@ use crate::io::{self, ReadOptions};
 use crate::mesh::TriMesh;
 use crate::pipeline::Observer;
 use crate::pipeline::observation::{Observation, Surrounded};
-use crate::pipeline::page::{Column, Exhibit, PageRequest, Show, shown_name};
+use crate::pipeline::page::{Exhibit, PageRequest, Show, section, shown_names};
 use crate::pipeline::side_by_side::{ColumnOrder, Portrait, SideBySide};
 use crate::pipeline::surroundings::Surroundings;
+use crate::report::page::{Content, Section};
 use crate::report::picture::Picture;
 use crate::visibility::{MeasureOptions, Visibility};
 
@@ -142,8 +145,12 @@ pub fn compare_files(request: &CompareRequest, observer: &dyn Observer) -> Resul
     let comparisons: Vec<Comparison> =
         tests.iter().map(|test| reference.compare(&test.mesh, observer)).collect::<Result<_>>()?;
     drop(reference);
+    let (reference_name, names) = request.shown_names();
     if let Some(sheet) = &request.sheet {
-        let drawn = contact_sheet(&mesh, &tests, &comparisons, request)?;
+        let portrait = |name: &String, mesh, image_rmse| Portrait { name: name.clone(), mesh, image_rmse };
+        let tests = names.iter().zip(&tests).zip(&comparisons);
+        let tests = tests.map(|((name, test), found)| portrait(name, &test.mesh, Some(found.image.image_rmse)));
+        let drawn = contact_sheet(portrait(&reference_name, &mesh, None), tests.collect(), request.up)?;
         io::write_atomic(sheet, request.force, |writer| drawn.write_png(writer))?;
     }
     let results = request.tests.iter().zip(&tests).zip(&comparisons);
@@ -154,31 +161,43 @@ pub fn compare_files(request: &CompareRequest, observer: &dyn Observer) -> Resul
         cache,
     };
     if let Some(page) = &request.page {
+        let names = page.named(names);
         let show = Show {
             deed: "compared",
-            original: Exhibit { name: shown_name(&request.reference), mesh: &mesh, visibility },
-            results: exhibits(request, &tests, &occluders, observer)?,
+            original: Exhibit { name: reference_name.clone(), mesh: &mesh, visibility },
+            results: exhibits(request, names.iter().zip(&tests), &occluders, observer)?,
             errors: comparisons.iter().map(|comparison| comparison.image).collect(),
-            columns: columns(&report.tests),
+            verdict: report.verdict(&names),
+            columns: Vec::new(),
+            sections: sections(&report, &reference_name, &names),
             measure: &request.measure,
-            notes: vec![DISTANCES.to_owned()],
+            notes: Vec::new(),
         };
         show.write(page, request.force, observer)?;
     }
     Ok(report)
 }
 
+impl CompareRequest {
+    /// What the reference and the tests are called in pictures and on the page.
+    fn shown_names(&self) -> (String, Vec<String>) {
+        let paths: Vec<&Path> = std::iter::once(&self.reference).chain(&self.tests).map(PathBuf::as_path).collect();
+        let mut names = shown_names(&paths);
+        (names.remove(0), names)
+    }
+}
+
 /// The tests as the page shows them, each looked at among the same occluders.
 fn exhibits<'a>(
     request: &CompareRequest,
-    tests: &'a [Test],
+    tests: impl Iterator<Item = (&'a String, &'a Test)>,
     occluders: &'a Surroundings,
     observer: &dyn Observer,
 ) -> Result<Vec<Exhibit<'a>>> {
-    let look = |(path, test): (&PathBuf, &'a Test)| {
-        Exhibit::look(shown_name(path), occluders.around(&test.mesh)?, &request.measure, observer)
+    let look = |(name, test): (&String, &'a Test)| {
+        Exhibit::look(name.clone(), occluders.around(&test.mesh)?, &request.measure, observer)
     };
-    request.tests.iter().zip(tests).map(look).collect()
+    tests.map(look).collect()
 }
 
 /// V of the reference, and what of it a cache had.
@@ -232,49 +251,39 @@ impl GeometricReport {
     }
 }
 
-/// What the page says below its table.
-const DISTANCES: &str = "SSIM: structural similarity of the pictures, 1 is alike. Distances between the surfaces are root mean \
-    squares in % of the diagonal of the first mesh: from its visible surface, from all of it weighted by visibility, and from all \
-    of it, hidden surface included.";
-
-/// The page's columns besides pictures and outlines.
-fn columns(tests: &[TestReport]) -> Vec<Column> {
-    let column = |head, of: fn(&TestReport) -> Option<f64>, unit: &str| {
-        let cell = |test: &TestReport| of(test).map_or("–".to_owned(), |value| format!("{value:.4}{unit}"));
-        Column { head, cells: tests.iter().map(cell).collect() }
-    };
-    vec![
-        column("SSIM", |t| Some(t.ssim), ""),
-        column("Visible distance", |t| t.geometric.visible.map(|d| d.rms), " %"),
-        column("Weighted distance", |t| t.geometric.weighted_rms, " %"),
-        column("Distance, all", |t| Some(t.geometric.forward.rms), " %"),
-    ]
+/// The tables of the page: a section for each.
+fn sections(report: &CompareReport, reference: &str, names: &[String]) -> Vec<Section> {
+    let bold = if names.len() > 1 { " Bold: the best of a column." } else { "" };
+    let texts = [
+        ("Difference of pictures", PICTURES),
+        ("Distance of surfaces", DISTANCES),
+        ("Triangles that went wrong", TRIANGLES),
+    ];
+    let tables = texts.into_iter().zip(report.tables(names));
+    let tables = tables.map(|((heading, text), table)| {
+        let text = text.replacen("REF", &format!("{reference} (REF)"), 1) + bold;
+        section(heading, &text, Content::Table(table))
+    });
+    tables.collect()
 }
+
+const PICTURES: &str = "Pictures from 20 sides. Image error, root mean square in grey levels of 255: head light on flat triangles, \
+    fixed light, smooth shading. SSIM: structural similarity, 1 is alike. Outline: pixels per picture, of 512 by 512, that only one \
+    of the two outlines covers. Depth: in % of the diagonal.";
+const DISTANCES: &str = "In % of the diagonal of REF. Mean, root mean square and largest, of the worse direction; then root mean \
+    squares: from each mesh to the other, and from visible, from hidden and from all surface of REF, weighted by visibility.";
+const TRIANGLES: &str = "Flipped: against the surface of REF nearest to them, and their share of the area. Edges: with three or more \
+    triangles, and how many more than REF has.";
 
 /// Pictures of the reference and of every test, with what differs in red.
-fn contact_sheet(
-    reference: &TriMesh,
-    tests: &[Test],
-    comparisons: &[Comparison],
-    request: &CompareRequest,
-) -> Result<Picture> {
-    let portrait = |path: &Path, mesh, image_rmse| {
-        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
-        Portrait { name, mesh, image_rmse }
-    };
-    let others = request.tests.iter().zip(tests).zip(comparisons);
-    let sheet = SideBySide {
-        title: String::new(),
-        subtitle: String::new(),
-        reference: portrait(&request.reference, reference, None),
-        tests: others
-            .map(|((path, test), comparison)| portrait(path, &test.mesh, Some(comparison.image.image_rmse)))
-            .collect(),
-        order: ColumnOrder::ReferenceFirst,
-        up: DVec3::from_array(request.up),
-    };
-    sheet.draw()
+fn contact_sheet(reference: Portrait<'_>, tests: Vec<Portrait<'_>>, up: [f64; 3]) -> Result<Picture> {
+    let (title, subtitle, order, up) =
+        (String::new(), String::new(), ColumnOrder::ReferenceFirst, DVec3::from_array(up));
+    SideBySide { title, subtitle, reference, tests, order, up }.draw()
 }
+
+/// Where people stand in [`views_around`].
+pub(super) const VIEW_NAMES: [&str; 3] = ["from the front", "from the back", "from below"];
 
 /// Three views for people: from the front right above, from the back left above, from below.
 pub(super) fn views_around(up: DVec3) -> [DVec3; 3] {

@@ -1,3 +1,5 @@
+mod page;
+
 use std::io::{self as std_io, Write};
 use std::path::{Path, PathBuf};
 
@@ -208,17 +210,11 @@ fn error_of(
 }
 
 impl MeshConvergence {
-    /// The file's name without its directory.
-    #[must_use]
-    pub fn name(&self) -> String {
-        self.file.file_name().unwrap_or(self.file.as_os_str()).to_string_lossy().into_owned()
-    }
-
-    fn curve(&self, weights: CameraWeights, error: impl Fn(&ConvergenceError) -> Option<f64>) -> Curve {
+    fn curve(&self, name: &str, weights: CameraWeights, error: impl Fn(&ConvergenceError) -> Option<f64>) -> Curve {
         let chosen = self.errors.iter().filter(|e| e.weights == weights);
         let points = chosen.filter_map(|e| Some((e.cameras as f64, error(e)?))).collect();
         let mark = if weights == CameraWeights::Equal { Mark::Open } else { Mark::Filled };
-        Curve { name: format!("{}, {}", self.name(), weights.name()), points, mark }
+        Curve { name: format!("{name}, {}", weights.name()), points, mark }
     }
 }
 
@@ -245,9 +241,9 @@ impl ConvergenceReport {
         let columns =
             "file,triangles,resolution,reference,reference_error,cameras,weights,against_4098,against_reference";
         writeln!(output, "{columns}")?;
-        for mesh in &self.meshes {
+        for (mesh, name) in self.meshes.iter().zip(self.names()) {
             // A name with a comma or a quote is quoted, quotes doubled (RFC 4180).
-            let file = format!("\"{}\"", mesh.name().replace('"', "\"\""));
+            let file = format!("\"{}\"", name.replace('"', "\"\""));
             let cell = |error: Option<f64>| error.map(|error| error.to_string()).unwrap_or_default();
             let (triangles, resolution, known_to) = (mesh.triangles, mesh.resolution, cell(mesh.reference_error));
             for e in &mesh.errors {
@@ -264,7 +260,8 @@ impl ConvergenceReport {
     pub fn plot(&self) -> LogLogPlot {
         let panel = |title: String, error: fn(&ConvergenceError) -> Option<f64>| {
             let both = [CameraWeights::Equal, CameraWeights::Area];
-            let curves = self.meshes.iter().map(|mesh| both.map(|weights| mesh.curve(weights, error)).to_vec());
+            let named = self.meshes.iter().zip(self.names());
+            let curves = named.map(|(mesh, name)| both.map(|weights| mesh.curve(&name, weights, error)).to_vec());
             Panel { title, groups: curves.collect() }
         };
         LogLogPlot {

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::io::{self, Attributes, Format, Loaded, ReadOptions, WriteOptions};
 use crate::pipeline::diagram::Record;
 use crate::pipeline::observation::Observation;
-use crate::pipeline::page::{Exhibit, PageRequest, Show, shown_name};
+use crate::pipeline::page::{Exhibit, PageRequest, Show, shown_name, shown_names};
 use crate::pipeline::surroundings::Surroundings;
 use crate::pipeline::{Clock, DiagramRequest, Observer};
 use crate::report::colour::ColourMap;
@@ -212,7 +212,9 @@ fn show<'a>(original: Exhibit<'a>, request: &'a MeasureRequest) -> Show<'a> {
         original,
         results: Vec::new(),
         errors: Vec::new(),
+        verdict: String::new(),
         columns: Vec::new(),
+        sections: Vec::new(),
         measure: &request.measure,
         notes: hiding_too(&request.occluders),
     }
@@ -220,7 +222,7 @@ fn show<'a>(original: Exhibit<'a>, request: &'a MeasureRequest) -> Show<'a> {
 
 /// A sentence about occluders, where there are any.
 pub(super) fn hiding_too(occluders: &[PathBuf]) -> Vec<String> {
-    let names: Vec<String> = occluders.iter().map(|path| shown_name(path)).collect();
+    let names = shown_names(&occluders.iter().map(PathBuf::as_path).collect::<Vec<_>>());
     if names.is_empty() {
         Vec::new()
     } else {

@@ -1,18 +1,17 @@
+mod page;
+
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::eval::image_errors;
 use crate::io::{Format, ReadOptions};
 use crate::mesh::{Remainder, TriMesh, compose_maps};
 use crate::pipeline::Observer;
-use crate::pipeline::measure::hiding_too;
-use crate::pipeline::page::{Exhibit, PageRequest, Show, shown_name};
-use crate::pipeline::surroundings::Surroundings;
-use crate::report::table::thousands;
+use crate::pipeline::page::PageRequest;
 use crate::simplify::{Level, SimplifyOptions, Stop, Target, Topology, TopologyChange, simplify};
-use crate::visibility::{Hidden, Look, MeasureOptions, Visibility, importance};
+use crate::visibility::{Hidden, Look, MeasureOptions, importance};
+pub(super) use page::{Before, show};
 
 /// What orders the collapses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -179,47 +178,6 @@ pub fn simplify_seen(
         level.topology = level.topology.after(deleted);
     }
     Ok(Simplified { levels, hidden_deleted })
-}
-
-/// A mesh before it was simplified.
-pub(super) struct Before<'a> {
-    pub mesh: &'a TriMesh,
-    /// `None` where nobody looked.
-    pub visibility: Option<Visibility>,
-    pub occluders: &'a Surroundings,
-}
-
-/// What a page shows of a run: every level is looked at by itself.
-pub(super) fn show<'a>(
-    before: Before<'a>,
-    simplified: &'a Simplified,
-    request: &'a SimplifyRequest,
-    observer: &dyn Observer,
-) -> Result<Show<'a>> {
-    let look = |name, mesh| Exhibit::look(name, before.occluders.around(mesh)?, &request.measure, observer);
-    let name = shown_name(&request.input);
-    let original = match before.visibility {
-        Some(visibility) => Exhibit { name, mesh: before.mesh, visibility },
-        None => look(name, before.mesh)?,
-    };
-    let levels = simplified.levels.iter().zip(&request.levels);
-    let results = levels.map(|(level, wanted)| look(shown_name(&wanted.output), &level.mesh));
-    let meshes: Vec<&TriMesh> = simplified.levels.iter().map(|level| &level.mesh).collect();
-    let mut notes = vec![format!("Collapses were ordered by the metric {}.", request.metric.name())];
-    if simplified.hidden_deleted > 0 {
-        let deleted = thousands(simplified.hidden_deleted as u64);
-        notes.push(format!("{deleted} hidden triangles were deleted before the first collapse."));
-    }
-    notes.extend(hiding_too(&request.occluders));
-    Ok(Show {
-        deed: "simplified",
-        original,
-        results: results.collect::<Result<_>>()?,
-        errors: image_errors(before.mesh, &meshes, observer)?,
-        columns: Vec::new(),
-        measure: &request.measure,
-        notes,
-    })
 }
 
 /// Puts the way from the whole mesh to its seen part before the maps of a level.

@@ -4,14 +4,15 @@ use crate::camera::Frame;
 use crate::error::{Error, Result};
 use crate::eval::{Gallery, Shot};
 use crate::mesh::TriangleId;
-use crate::pipeline::page::{Exhibit, MAP};
+use crate::pipeline::compare::{VIEW_NAMES, views_around};
+use crate::pipeline::page::{Exhibit, MAP, section};
 use crate::pipeline::render::heat_picture;
 use crate::pipeline::side_by_side::Pictures;
 use crate::raster::GreyImage;
 use crate::report::colour::mix;
 use crate::report::contact_sheet::RED;
 use crate::report::histogram::Histogram;
-use crate::report::page::{FIGURES_BYTES, Figure, Figures, Image};
+use crate::report::page::{Content, FIGURES_BYTES, Figure, Figures, Image, Section};
 use crate::report::picture::{Picture, WHITE};
 
 /// Bars of a histogram.
@@ -25,6 +26,15 @@ const FULL_RED: f32 = 64.0;
 
 /// Pixels along the side of a picture: the first that keeps all of them within [`FIGURES_BYTES`].
 const WIDTHS: [u32; 5] = [420, 300, 210, 150, 100];
+
+/// Heading and text of the rows of pictures.
+const HEAT: (&str, &str) = ("Pictures", "The same colours from three sides.");
+const ORIGINAL: (&str, &str) = ("Pictures of the original", "");
+const RESULTS: (&str, &str) = (
+    "Pictures of the results",
+    "From the same sides, each beside what differs from the original: white where the pictures are equal, full red from 64 grey \
+     levels of 255.",
+);
 
 /// How the surface of each mesh is spread over visibility, on one scale.
 pub(super) fn histograms(exhibits: &[&Exhibit<'_>]) -> Result<Figures> {
@@ -49,44 +59,47 @@ fn spread(exhibit: &Exhibit<'_>) -> Vec<f64> {
     Histogram::percents_of(exhibit.visibility.per_triangle(), &areas, CLASSES)
 }
 
-/// A row for each view: the original's heat map where it is alone, else original, and each result with what differs.
-pub(super) fn pictures(
-    original: &Exhibit<'_>,
-    results: &[Exhibit<'_>],
-    views: &[DVec3; 3],
-    up: DVec3,
-) -> Result<Figures> {
+/// The original from three sides, a column each: its heat map where it is alone, else below it a row for each result, every
+/// picture with what differs.
+pub(super) fn pictures(original: &Exhibit<'_>, results: &[Exhibit<'_>], up: DVec3) -> Result<Vec<Section>> {
     let mut drawn = Vec::new();
     for width in WIDTHS {
-        let shots = views.map(|toward| Shot::fitting(original.mesh, toward, up, width));
-        drawn = if results.is_empty() { heat(original, &shots)? } else { compared(original, results, &shots)? };
-        if drawn.iter().map(|figure| figure.image.embedded_bytes()).sum::<usize>() <= FIGURES_BYTES {
+        let shots = views_around(up).map(|toward| Shot::fitting(original.mesh, toward, up, width));
+        drawn = if results.is_empty() { vec![heat(original, &shots)?] } else { compared(original, results, &shots)? };
+        if drawn.iter().flatten().map(|figure| figure.image.embedded_bytes()).sum::<usize>() <= FIGURES_BYTES {
             break;
         }
     }
-    Ok(Figures { columns: drawn.len() / views.len().max(1), figures: drawn })
+    let headings = if results.is_empty() { [HEAT, RESULTS] } else { [ORIGINAL, RESULTS] };
+    let columns = [VIEW_NAMES.len(), 2 * VIEW_NAMES.len()];
+    let rows = headings.into_iter().zip(columns).zip(drawn);
+    let rows = rows.map(|(((heading, text), columns), figures)| {
+        section(heading, text, Content::Figures(Figures { columns, figures }))
+    });
+    Ok(rows.collect())
 }
 
 fn heat(exhibit: &Exhibit<'_>, shots: &[Shot; 3]) -> Result<Vec<Figure>> {
     let gallery = Gallery::new(exhibit.mesh, exhibit.mesh);
-    let draw = |shot: &Shot| {
+    let draw = |(shot, side): (&Shot, &str)| {
         let picture = heat_picture(&gallery, shot, exhibit.visibility.per_triangle(), MAP)?;
-        figure(&picture, format!("{}, visibility", exhibit.name))
+        figure(&picture, format!("{} {side}", exhibit.name))
     };
-    shots.iter().map(draw).collect()
+    shots.iter().zip(VIEW_NAMES).map(draw).collect()
 }
 
-fn compared(original: &Exhibit<'_>, results: &[Exhibit<'_>], shots: &[Shot; 3]) -> Result<Vec<Figure>> {
+/// The pictures of the original, and those of all results.
+fn compared(original: &Exhibit<'_>, results: &[Exhibit<'_>], shots: &[Shot; 3]) -> Result<Vec<Vec<Figure>>> {
     let reference = Pictures::of(original.mesh, original.mesh, shots)?;
-    let others: Vec<Pictures> =
-        results.iter().map(|result| Pictures::of(result.mesh, original.mesh, shots)).collect::<Result<_>>()?;
-    let mut figures = Vec::new();
-    for view in 0..shots.len() {
-        figures.push(figure(&grey(&reference.white[view])?, original.name.clone())?);
-        for (result, sheet) in results.iter().zip(&others) {
-            figures.push(figure(&grey(&sheet.white[view])?, result.name.clone())?);
+    let whole = reference.white.iter().zip(VIEW_NAMES);
+    let whole = whole.map(|(image, side)| figure(&grey(image)?, format!("{} {side}", original.name)));
+    let mut figures = vec![whole.collect::<Result<Vec<_>>>()?, Vec::new()];
+    for result in results {
+        let sheet = Pictures::of(result.mesh, original.mesh, shots)?;
+        for (view, side) in VIEW_NAMES.into_iter().enumerate() {
             let red = difference(&reference.black[view], &sheet.black[view])?;
-            figures.push(figure(&red, format!("{}, difference", result.name))?);
+            figures[1].push(figure(&grey(&sheet.white[view])?, format!("{} {side}", result.name))?);
+            figures[1].push(figure(&red, format!("{}: difference {side}", result.name))?);
         }
     }
     Ok(figures)

@@ -142,5 +142,5 @@ fn figures(heading: &str, text: &str, columns: usize, figures: Vec<Figure>) -> S
 }
 
 fn cells(table: &table::Table) -> Table {
-    Table { heads: table.heads(), rows: table.rows().to_vec() }
+    Table { heads: table.heads(), rows: table.rows().to_vec(), ..Table::default() }
 }

@@ -3,10 +3,11 @@
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
+use glam::DVec3;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use sha2::{Digest, Sha256};
 
-use super::{Content, Fact, Figures, Image, Legend, Page, Section, Table, Viewer};
+use super::{Content, Fact, Figure, Figures, Image, Legend, Page, Section, Table, Viewer};
 
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
@@ -81,6 +82,7 @@ fn section_markup(number: usize, section: &Section) -> Markup {
                 Content::Figures(figures) => { (figures_markup(figures)) }
                 Content::Viewer(shown) => { (viewer(number, shown)) }
                 Content::Notes(notes) => { ul { @for note in notes { li { (note) } } } }
+                Content::Commands(lines) => { pre { @for line in lines { code { (line) } "\n" } } }
             }
         }
     }
@@ -105,10 +107,12 @@ fn table_markup(table: &Table) -> Markup {
             table {
                 thead { tr { @for head in &table.heads { th scope="col" { (head) } } } }
                 tbody {
-                    @for row in &table.rows {
+                    @for (number, row) in table.rows.iter().enumerate() {
                         tr {
                             @for (column, cell) in row.iter().enumerate() {
-                                @if column == 0 { th scope="row" { (cell) } } @else { td { (cell) } }
+                                @if column == 0 { th scope="row" { (cell) } }
+                                @else if table.best.contains(&[number, column]) { td { strong { (cell) } } }
+                                @else { td { (cell) } }
                             }
                         }
                     }
@@ -118,13 +122,16 @@ fn table_markup(table: &Table) -> Markup {
     }
 }
 
-/// Pictures keep their columns, since they are read along them, and scroll where there is no room; plots do not.
+/// Pictures keep their columns, since they are read along them; phones show pairs, and across both what has no partner.
 fn figures_markup(shown: &Figures) -> Markup {
     let plots = shown.figures.iter().all(|figure| matches!(figure.image, Image::Svg(_)));
+    let alone = |number: usize| !shown.columns.is_multiple_of(2) && number.is_multiple_of(shown.columns);
+    let across =
+        |number: usize, figure: &Figure| (alone(number) || matches!(figure.image, Image::Svg(_))).then_some("across");
     html! {
         div class=(if plots { "figures plots" } else { "figures" }) style={ "--columns:" (shown.columns) } {
-            @for figure in &shown.figures {
-                figure {
+            @for (number, figure) in shown.figures.iter().enumerate() {
+                figure class=[across(number, figure)] {
                     @match &figure.image {
                         Image::Png(bytes) => { img alt=(figure.caption) src=(data("image/png", bytes)); }
                         Image::Svg(text) => {
@@ -142,8 +149,35 @@ fn data(kind: &str, bytes: &[u8]) -> String {
     format!("data:{kind};base64,{}", BASE64_STANDARD.encode(bytes))
 }
 
+/// Axes that can be up.
+const AXES: [(&str, [f64; 3]); 3] = [("X", [1.0, 0.0, 0.0]), ("Y", [0.0, 1.0, 0.0]), ("Z", [0.0, 0.0, 1.0])];
+
+/// A direction as the script reads it.
+fn numbers([x, y, z]: [f64; 3]) -> String {
+    format!("{x} {y} {z}")
+}
+
+/// The axes, and first the direction that was given where it is none of them.
+fn up_switch(number: usize, given: [f64; 3]) -> Markup {
+    let given = DVec3::from_array(given).normalize().to_array();
+    let other = AXES.iter().all(|(_, axis)| *axis != given).then_some(("As given", given));
+    html! {
+        div class="named" {
+            span aria-hidden="true" { "Up" }
+            fieldset class="switch" {
+                legend { "Up" }
+                @for (name, up) in other.into_iter().chain(AXES) {
+                    label {
+                        input type="radio" name={ "up-" (number) } value=(numbers(up)) checked[up == given];
+                        span { (name) }
+                    }
+                }
+            }
+        }
+    }
+}
+
 fn viewer(number: usize, shown: &Viewer) -> Markup {
-    let numbers = |[x, y, z]: [f64; 3]| format!("{x} {y} {z}");
     html! {
         div class="viewer" data-up=(numbers(shown.up)) data-toward=(numbers(shown.toward)) {
             div class="tools" {
@@ -156,6 +190,7 @@ fn viewer(number: usize, shown: &Viewer) -> Markup {
                         }
                     }
                 }
+                (up_switch(number, shown.up))
                 @if shown.legend.is_some() { label class="check" { input type="checkbox" name="heat" checked; "Visibility" } }
                 label class="check" { input type="checkbox" name="edges"; "Edges" }
                 button type="button" name="reset" { "Reset view" }
@@ -172,8 +207,12 @@ fn viewer(number: usize, shown: &Viewer) -> Markup {
             }
             @if let Some(legend) = &shown.legend { (legend_markup(legend)) }
             p class="hint" {
-                "Drag to turn; right-drag or two fingers move. With a view in focus: " kbd { "←" } kbd { "↑" } kbd { "→" } kbd { "↓" } " turn, "
-                kbd { "+" } kbd { "−" } " or the wheel zoom, " kbd { "Home" } " resets. Views turn together."
+                span class="mouse" {
+                    "Drag to turn; right-drag moves. With a view in focus: " kbd { "←" } kbd { "↑" } kbd { "→" } kbd { "↓" } " turn, "
+                    kbd { "+" } kbd { "−" } " or the wheel zoom, " kbd { "Home" } " resets."
+                }
+                span class="touch" { "One finger turns a view, two move and zoom it; beside the views the page scrolls." }
+                @if shown.models.len() > 1 { " Views turn together." }
             }
             noscript { p class="trouble" { "The models need JavaScript; the pictures below do not." } }
         }

@@ -59,6 +59,8 @@ pub enum Content {
     Viewer(Viewer),
     /// Sentences, one a line.
     Notes(Vec<String>),
+    /// What was typed, one a line.
+    Commands(Vec<String>),
 }
 
 /// A number of a summary.
@@ -79,12 +81,14 @@ pub struct Table {
     pub heads: Vec<String>,
     /// One cell for each head.
     pub rows: Vec<Vec<String>>,
+    /// Row and column, from 0, of cells to stand out: the best of their column.
+    pub best: Vec<[usize; 2]>,
 }
 
 /// Pictures and plots in rows.
 #[derive(Debug, Clone)]
 pub struct Figures {
-    /// How many stand side by side where there is room; phones show fewer.
+    /// How many stand side by side where there is room; phones show two, an odd one and plots across both.
     pub columns: usize,
     /// From the left, then down.
     pub figures: Vec<Figure>,
@@ -104,11 +108,11 @@ pub struct Figure {
 pub enum Image {
     /// A PNG file.
     Png(Vec<u8>),
-    /// An SVG document on white; its colours mean something, so that it stays so in the dark.
+    /// An SVG document on white; its colours mean something, so that the dark only dims them.
     Svg(String),
 }
 
-/// Models side by side, turned together.
+/// Models side by side, turned together; the reader chooses another axis to be up.
 #[derive(Debug, Clone)]
 pub struct Viewer {
     /// The first one is the original; all in one frame, within the unit sphere.
@@ -117,7 +121,7 @@ pub struct Viewer {
     pub legend: Option<Legend>,
     /// From the models toward the eye, at first; any length but 0.
     pub toward: [f64; 3],
-    /// Upward, any length but 0.
+    /// Upward at first, any length but 0.
     pub up: [f64; 3],
 }
 

@@ -38,6 +38,8 @@
   const FIELD = 28;
   /** Room around the original at first. */
   const MARGIN = 1.06;
+  /** Pixels to drag for one turn, whatever the size of the views. */
+  const TURN = 450;
   const KEY_TURN = Math.PI / 24;
   const KEY_ZOOM = 0.87;
 
@@ -65,6 +67,11 @@
     element.remove();
     const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
     return new Response(stream).arrayBuffer();
+  }
+
+  /** The direction that three numbers with blanks between them give. */
+  function direction(text) {
+    return new THREE.Vector3(...text.split(' ').map(Number)).normalize();
   }
 
   class Pane {
@@ -130,18 +137,15 @@
       this.element = element;
       this.heat = { value: true };
       this.panes = [...element.querySelectorAll('.pane')].map((figure) => new Pane(figure, this.heat));
-      const numbers = (name) => new THREE.Vector3(...element.dataset[name].split(' ').map(Number)).normalize();
+      this.up = direction(element.dataset.up);
+      this.toward = direction(element.dataset.toward);
       this.camera = new THREE.PerspectiveCamera(FIELD);
-      this.camera.up.copy(numbers('up'));
-      this.camera.position.copy(numbers('toward')).multiplyScalar(1 / Math.sin(FIELD * Math.PI / 360));
-      const panes = element.querySelector('.panes');
-      this.controls = new THREE.OrbitControls(this.camera, panes);
-      this.controls.minDistance = 0.2;
-      this.controls.maxDistance = 20;
-      this.controls.saveState();
-      this.controls.addEventListener('change', () => this.redraw());
-      // One finger up or down still scrolls the page.
-      panes.style.touchAction = 'pan-y';
+      const panes = this.area = element.querySelector('.panes');
+      this.turnUp(this.up);
+      // Between the views and on their names a finger scrolls the page.
+      panes.addEventListener('pointerdown', (event) => {
+        if (event.target.tagName !== 'CANVAS') event.stopImmediatePropagation();
+      }, { capture: true });
       // The wheel scrolls the page too, until a view has the focus.
       panes.addEventListener('wheel', (event) => {
         if (!panes.contains(document.activeElement) && !event.ctrlKey) event.stopImmediatePropagation();
@@ -150,7 +154,31 @@
       panes.addEventListener('keydown', (event) => this.key(event));
       element.addEventListener('change', ({ target }) => this.changed(target));
       element.querySelector('[name=reset]').addEventListener('click', () => this.controls.reset());
-      new ResizeObserver(() => this.redraw()).observe(panes);
+      new ResizeObserver(() => { this.pace(); this.redraw(); }).observe(panes);
+    }
+
+    /** Looks with `up` upward, from where the same turn takes the eye. */
+    turnUp(up) {
+      const turn = this.camera.quaternion.clone().setFromUnitVectors(this.up, up);
+      this.camera.up.copy(up);
+      this.camera.position.copy(this.toward).applyQuaternion(turn).multiplyScalar(1 / Math.sin(FIELD * Math.PI / 360));
+      // Controls settle which way is up when they are made.
+      this.controls?.dispose();
+      this.controls = new THREE.OrbitControls(this.camera, this.area);
+      this.area.style.touchAction = '';
+      this.controls.minDistance = 0.2;
+      this.controls.maxDistance = 20;
+      this.controls.addEventListener('change', () => this.redraw());
+      this.pace();
+      this.fit();
+    }
+
+    /** Turns as far as the finger goes: the controls take all panes for one view. */
+    pace() {
+      const view = this.panes.find(({ figure }) => !figure.hidden).canvas;
+      const { clientHeight } = this.area;
+      this.controls.rotateSpeed = clientHeight / TURN;
+      this.controls.panSpeed = clientHeight / Math.max(1, view.clientHeight);
     }
 
     /** Puts the eye where it just sees the whole original, which leaves corners of the unit sphere empty. */
@@ -194,6 +222,7 @@
       if (input.name.startsWith('show-')) {
         this.panes.forEach((pane, index) => { pane.figure.hidden = input.value !== '' && input.value !== String(index); });
       }
+      if (input.name.startsWith('up-')) this.turnUp(direction(input.value));
       this.redraw();
     }
 

@@ -25,10 +25,15 @@ fn page(name: &str) -> Page {
     let viewer = Viewer { models, legend: Some(legend), toward: [1.0, 0.0, 0.0], up: [0.0, 0.0, 1.0] };
     let sections = vec![
         section(Content::Summary(vec![Fact { name: text(), value: text(), note: text() }])),
-        section(Content::Table(Table { heads: vec![text(), text()], rows: vec![vec![text(), text()]] })),
+        section(Content::Table(Table {
+            heads: vec![text(), text()],
+            rows: vec![vec![text(), text()]],
+            best: vec![[0, 1]],
+        })),
         section(Content::Figures(Figures { columns: 2, figures })),
         section(Content::Viewer(viewer)),
         section(Content::Notes(vec![text()])),
+        section(Content::Commands(vec![text()])),
     ];
     Page { title: text(), subtitle: text(), sections }
 }
@@ -38,8 +43,8 @@ fn names_are_escaped_wherever_they_stand() {
     let html = page(HOSTILE).to_html().unwrap();
     let escaped = "&lt;/script&gt;&lt;img src=x onerror=alert(1)&gt;&quot;' &amp;amp; .ply";
     assert!(!html.contains("<img src=x") && !html.contains(HOSTILE));
-    // Twice in the head of the page, twice in each of five sections, and in what they show.
-    assert_eq!(html.matches(escaped).count(), 2 + 1 + 2 * 5 + 3 + 4 + 4 + 2 * 5 + 3 + 1);
+    // Twice in the head of the page, twice in each of six sections, and in what they show.
+    assert_eq!(html.matches(escaped).count(), 2 + 1 + 2 * 6 + 3 + 4 + 4 + 2 * 5 + 3 + 1 + 1);
 }
 
 #[test]
