@@ -8,6 +8,8 @@ from itertools import groupby
 
 # A program that keeps more than this share above the count has stopped early, and wins nothing by it.
 EXCESS = 0.01
+# One that goes farther below has done something else; a few collapses that take more at once are no matter.
+SHORTFALL = 0.1
 
 # Key in a cell, heading, digits; of each the least is the best.
 MEASURES = [
@@ -22,7 +24,13 @@ MEASURES = [
 
 def reached(cell):
     """Whether the cell may be compared with others of its count."""
-    return "failed" not in cell and cell["triangles"] <= (1 + EXCESS) * cell["count"]
+    return "failed" not in cell and not mark(cell)
+
+
+def mark(cell):
+    """What stands beside a count that is not the one asked for: ↑ above it, ↓ below; empty near it."""
+    share = cell["triangles"] / cell["count"]
+    return " ↑" if share > 1 + EXCESS else " ↓" if share < 1 - SHORTFALL else ""
 
 
 def value(cell, key):
@@ -60,7 +68,7 @@ def summary(cells):
 
 
 def rows(cells):
-    """Every cell; the best of each measure at each count in bold, a program above the count marked with ↑."""
+    """Every cell; the best of each measure at each count in bold, a program that missed the count marked."""
     headings = ["model", "asked", "program", "triangles", *(heading for _, heading, _ in MEASURES)]
     lines = [" | ".join(headings), "--- | ---: | --- | ---:" + " | ---:" * len(MEASURES)]
     for model, count, group in groups(cells):
@@ -70,7 +78,7 @@ def rows(cells):
             if "failed" in cell:
                 lines.append(start + "failed: " + cell["failed"].replace("|", "/") + " |" * len(MEASURES))
                 continue
-            shown = [f"{cell['triangles']:,}" + ("" if reached(cell) else " ↑")]
+            shown = [f"{cell['triangles']:,}{mark(cell)}"]
             for key, _, digits in MEASURES:
                 text = f"{value(cell, key):.{digits}f}"
                 shown.append(f"**{text}**" if winners[key] is cell else text)
@@ -101,7 +109,7 @@ def page(cells, settings, samples):
     facts = {fact: sorted({cell[fact] for cell in cells}) for fact in ("date", "machine", "version", "judge")}
     return "\n".join([
         "## Outsight's default against the best rival\n", summary(cells), "", second_judge(cells), "",
-        "## All programs\n", HOW.format(excess=EXCESS, samples=samples), "", rows(cells), "",
+        "## All programs\n", HOW.format(excess=EXCESS, shortfall=SHORTFALL, samples=samples), "", rows(cells), "",
         "## Made with\n",
         *(f"    benches/peers/run simplify --ratios {ratios} {' '.join(models)}" for ratios, models in commands.items()), "",
         "* Models: " + ", ".join(f"{model} {of:,} triangles" for model, of in size.items()),
@@ -111,8 +119,8 @@ def page(cells, settings, samples):
 
 
 HOW = """\
-Bold: the best of its column among those that reached the count. ↑: stopped more than {excess:.0%} above it, compared with
-nobody. Image RMSE in grey levels and silhouette in pixels that differ, both over 20 views of 512² pixels. Distance between
+Bold: the best of its column among those that reached the count. ↑: stopped more than {excess:.0%} above it; ↓: went more
+than {shortfall:.0%} below it; compared with nobody. Image RMSE in grey levels and silhouette in pixels that differ, both over 20 views of 512² pixels. Distance between
 the surfaces in % of the diagonal, the worse way, {samples:,} points each; hidden surface counts like any other. CPU s:
 processor time on one thread, without reading and writing, the least of the repeats; the machine is shared, so compare
 only within a count. MiB: for a rival what its work takes above its libraries and the mesh, for Outsight the whole

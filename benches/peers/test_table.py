@@ -19,6 +19,11 @@ class Table(unittest.TestCase):
         self.assertIn("| early | 102 ↑ | 0.10 |", table.rows([early, on_count]))
         self.assertIn("| on count | 101 | **0.50** |", table.rows([early, on_count]))
 
+    def test_who_goes_far_below_the_count_is_marked_and_never_the_best(self):
+        less, on_count = cell("less", triangles=89, image=0.1), cell("on count", triangles=90, image=0.5)
+        self.assertIs(table.best([less, on_count], "image_rmse"), on_count)
+        self.assertIn("| less | 89 ↓ | 0.10 |", table.rows([less, on_count]))
+
     def test_the_least_of_the_repeats_counts(self):
         self.assertEqual(table.value(cell("a"), "cpu_s"), 1.0)
 
