@@ -79,7 +79,7 @@ impl Table {
     #[must_use]
     pub fn to_markdown(&self) -> String {
         let line = |cells: &[String]| {
-            let escaped: Vec<String> = cells.iter().map(|cell| cell.replace('|', "\\|")).collect();
+            let escaped: Vec<String> = cells.iter().map(|cell| markdown(cell)).collect();
             format!("| {} |\n", escaped.join(" | "))
         };
         let is_left = |column: usize| self.left_aligned.contains(&column);
@@ -125,6 +125,23 @@ impl fmt::Display for Table {
 
 fn strings<S: Into<String>>(cells: impl IntoIterator<Item = S>) -> Vec<String> {
     cells.into_iter().map(Into::into).collect()
+}
+
+/// Text as Markdown shows it to be: nothing in it is markup, a bar or the end of a line.
+#[must_use]
+pub fn markdown(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '&' => safe.push_str("&amp;"),
+            '<' => safe.push_str("&lt;"),
+            '>' => safe.push_str("&gt;"),
+            '|' | '`' | '[' | ']' | '\\' => safe.extend(['\\', letter]),
+            _ if letter.is_control() => safe.push(' '),
+            _ => safe.push(letter),
+        }
+    }
+    safe
 }
 
 /// A whole number with a comma every three digits: `1,234,567`.
@@ -176,6 +193,13 @@ mod tests {
     fn markdown_keeps_columns_apart_whatever_stands_in_them() {
         let table = Table::new(["name", "n"]).units(["", "s"]).row(["a|b", "1"]);
         assert_eq!(table.to_markdown(), "| name | n (s) |\n| --- | ---: |\n| a\\|b | 1 |\n");
+    }
+
+    #[test]
+    fn markdown_shows_hostile_names_and_runs_none() {
+        let table = Table::new(["name", "n"]).row(["<img src=x>\n[a](b)`c`&\\", "1"]);
+        let shown = "| &lt;img src=x&gt; \\[a\\](b)\\`c\\`&amp;\\\\ | 1 |\n";
+        assert_eq!(table.to_markdown(), format!("| name | n |\n| --- | ---: |\n{shown}"));
     }
 
     #[test]

@@ -10,7 +10,7 @@ use super::words;
 use crate::error::{Error, Result};
 use crate::io::write_atomic;
 use crate::report::outline::outline_picture;
-use crate::report::table::Table;
+use crate::report::table::{Table, markdown};
 use crate::visibility::outline::Outline;
 
 /// Points along the outline of figure 1, and cameras around it: a pixel or more each.
@@ -46,8 +46,9 @@ impl ZtReport {
     fn to_markdown(&self, request: &ZtRequest) -> String {
         let part =
             |heading: &str, text: &str, table: &Table| format!("## {heading}\n\n{text}\n\n{}\n", table.to_markdown());
-        let of_model = |model: &ModelReport| part(&model.findings.name, &model.remarks(), &model.level_table());
-        let notes = self.notes(request).into_iter().map(|note| format!("- {note}\n"));
+        let of_model =
+            |model: &ModelReport| part(&markdown(&model.findings.name), &model.remarks(), &model.level_table());
+        let notes = self.notes(request).into_iter().map(|note| format!("- {}\n", markdown(&note)));
         [
             format!("# Visibility-guided simplification\n\n{}\n\n", words::SUBTITLE),
             part("Table 1: visibility", words::TABLE1, &self.table1()),
