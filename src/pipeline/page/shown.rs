@@ -20,7 +20,7 @@ const STEPS: f64 = 65536.0;
 /// Safety in the guess of how many triangles fit: fewer triangles share fewer vertices.
 const CAUTION: f64 = 0.9;
 
-/// All models of a viewer in the frame of the first, each within its share of `bytes` of the page.
+/// All models of a viewer in the frame of the first, the original, within `bytes` of the page together.
 pub(in crate::pipeline) fn models(
     exhibits: &[&Exhibit<'_>],
     bytes: usize,
@@ -28,8 +28,16 @@ pub(in crate::pipeline) fn models(
 ) -> Result<Vec<Model>> {
     let Some(original) = exhibits.first() else { return Ok(Vec::new()) };
     let frame = Frame::of(original.mesh);
-    let share = bytes / exhibits.len();
-    exhibits.iter().map(|exhibit| model(exhibit, &frame, share, progress)).collect()
+    // Results first: they are what is judged, and what they leave is the original's.
+    let mut left = bytes;
+    let mut shown = Vec::new();
+    for (before, exhibit) in exhibits.iter().enumerate().rev() {
+        let next = model(exhibit, &frame, left / (before + 1), progress)?;
+        left = left.saturating_sub(next.model.bytes());
+        shown.push(next);
+    }
+    shown.reverse();
+    Ok(shown)
 }
 
 /// The model of an exhibit, or the largest level of detail that fits into `share` bytes of the page.
@@ -96,6 +104,24 @@ mod tests {
     use crate::pipeline::observation::Surrounded;
     use crate::progress::Silent;
     use crate::visibility::MeasureOptions;
+
+    #[test]
+    fn results_are_whole_and_the_original_has_what_they_leave() {
+        let [fine, coarse] = [4, 2].map(|cuts| shapes::nested_spheres(0.5, cuts).mesh);
+        let options = MeasureOptions { resolution: Some(64), ..MeasureOptions::default() };
+        let look =
+            |mesh| Exhibit::look("s.ply".to_owned(), Surrounded { mesh, occluders: &[] }, &options, &Silent).unwrap();
+        let exhibits = [look(&fine), look(&coarse)];
+        let sizes: Vec<usize> =
+            exhibits.iter().map(|e| models(&[e], usize::MAX, &Silent).unwrap()[0].model.bytes()).collect();
+        // Half of it each would be too little for the original.
+        let enough = sizes[0] + sizes[1];
+        let shown = models(&[&exhibits[0], &exhibits[1]], enough, &Silent).unwrap();
+        assert!(sizes[0] > enough / 2);
+        assert!(shown.iter().all(|model| !model.caption.contains("level of detail")), "{}", shown[0].caption);
+        let shown = models(&[&exhibits[0], &exhibits[1]], enough - 1, &Silent).unwrap();
+        assert!(shown[0].caption.contains("level of detail") && !shown[1].caption.contains("level of detail"));
+    }
 
     #[test]
     fn a_model_too_large_for_its_share_becomes_a_level_of_detail() {
