@@ -1,7 +1,7 @@
 //! The study as one page.
 
 use super::ZtRequest;
-use super::cell::LookFinding;
+use super::cell::{LookFinding, SheetFinding};
 use super::figures::{Part, Room};
 use super::gain::Levels;
 use super::plots::Plot;
@@ -23,7 +23,7 @@ impl ZtReport {
     pub(super) fn page(&self, request: &ZtRequest, plots: &[Plot]) -> Result<Page> {
         let room = Room::of(self, plots);
         let mut sections = vec![
-            section("Summary", &self.left_out_in_words().unwrap_or_default(), Content::Summary(self.facts())),
+            section("Summary", &self.summary_in_words(), Content::Summary(self.facts())),
             section("Table 1: visibility", words::TABLE1, Content::Table(cells(&self.table1()))),
             section("Table 2: less image error", words::TABLE2, Content::Table(cells(&self.table2()))),
             section("Who gains", words::GAINS, Content::Table(cells(&self.gains_table()))),
@@ -81,12 +81,20 @@ impl ModelReport {
                     "{triangles} triangles, QB and VG with the options of preset {preset}: difference of QB, QB, original, VG, \
                      difference of VG"
                 );
+                let heading = format!("{name}, side by side, preset {preset}{}", self.figure_of(sheet));
                 let sheet = room.figure(Part::Sheet, &file(&sheet.file), caption)?;
-                sections.push(figures(&format!("{name}, side by side, preset {preset}"), "", 1, vec![sheet]));
+                sections.push(figures(&heading, "", 1, vec![sheet]));
             }
         }
         sections.extend(self.viewer(request));
         Ok(sections)
+    }
+
+    /// ` (Fig. 5)`: which of the paper's figures shows its model at this count.
+    fn figure_of(&self, sheet: &SheetFinding) -> String {
+        let pictures = self.stand.model().map_or(&[][..], |paper| paper.pictures);
+        let shown = pictures.iter().find(|picture| picture.triangles == sheet.triangles);
+        shown.map_or_else(String::new, |picture| format!(" (Fig. {})", picture.figure))
     }
 
     fn viewer(&self, request: &ZtRequest) -> Option<Section> {

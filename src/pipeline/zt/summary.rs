@@ -19,7 +19,7 @@ pub struct ImprovementSummary {
     pub quadric: Preset,
     /// at these levels.
     pub levels: Levels,
-    /// MeanImprovement over all models.
+    /// Mean over all models.
     pub all: MeanImprovement,
     /// Over those with V(M) < 0.5.
     pub below_half: MeanImprovement,
@@ -29,7 +29,7 @@ pub struct ImprovementSummary {
     pub correlations: Vec<Correlation>,
 }
 
-/// MeanImprovement of the improvements of several models.
+/// Mean of the improvements of several models.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct MeanImprovement {
     /// In percent of the image error of QB; `None` of no model.

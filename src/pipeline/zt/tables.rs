@@ -6,7 +6,7 @@ use super::report::{ModelReport, ZtReport};
 use super::summary::{HALF, ImprovementSummary, MeanImprovement};
 use super::words::{percent_of, short};
 use crate::pipeline::{Metric, Preset};
-use crate::report::paper;
+use crate::report::paper::{self, Stand};
 use crate::report::rank::spearman;
 use crate::report::table::{Table, thousands};
 
@@ -24,11 +24,13 @@ impl ZtReport {
     pub fn table1(&self) -> Table {
         let presets = self.presets();
         let heads = presets.iter().flat_map(|p| [format!("V(M), {}", p.name()), format!("time, {}", p.name())]);
-        let mut table = Table::new(["model".to_owned(), "triangles".to_owned()].into_iter().chain(heads));
+        let first = ["model", "of the paper", "triangles"].map(str::to_owned);
+        let mut table = Table::new(first.into_iter().chain(heads)).left(1);
         for model in &self.models {
             let printed = model.stand.model();
             let mut row = vec![
                 model.findings.name.clone(),
+                of_the_paper(model),
                 beside(thousands(model.findings.triangles as u64), printed.map(|p| thousands(p.triangles as u64))),
             ];
             for look in presets.iter().filter_map(|&preset| model.look(preset)) {
@@ -49,12 +51,13 @@ impl ZtReport {
         let columns = self.columns();
         let heads = columns.iter().map(|column| column.head.clone());
         let units = columns.iter().map(|column| column.unit.clone());
-        let empty = Table::new(["model".to_owned(), "V(M)".to_owned()].into_iter().chain(heads));
-        let empty = empty.units([String::new(), String::new()].into_iter().chain(units));
+        let first = ["model", "of the paper", "V(M)"].map(str::to_owned);
+        let empty = Table::new(first.into_iter().chain(heads)).left(1);
+        let empty = empty.units(vec![String::new(); 3].into_iter().chain(units));
         self.models.iter().fold(empty, |table, model| {
             let cells = columns.iter().map(|column| (column.cell)(model));
             let visibility = model.table_visibility().map_or_else(dash, |v| format!("{v:.3}"));
-            table.row([model.findings.name.clone(), visibility].into_iter().chain(cells))
+            table.row([model.findings.name.clone(), of_the_paper(model), visibility].into_iter().chain(cells))
         })
     }
 
@@ -226,7 +229,17 @@ fn dash() -> String {
 }
 
 fn percent(value: f64) -> String {
-    format!("{value:.1}")
+    // Adding 0 takes the sign off a zero.
+    format!("{:.1}", (10.0 * value).round() / 10.0 + 0.0)
+}
+
+/// Which of the paper's models it is, or stands in for.
+fn of_the_paper(model: &ModelReport) -> String {
+    match model.stand {
+        Stand::Original(paper) => paper.name.to_owned(),
+        Stand::StandIn(paper) => format!("for {}", paper.name),
+        Stand::None => dash(),
+    }
 }
 
 /// Ours, and the paper's in brackets.

@@ -2,8 +2,9 @@
 
 use super::ZtRequest;
 use super::cell::{LevelFinding, RunFinding};
-use super::gain::{Improvement, PresetPair, QuadricCount};
+use super::gain::{Improvement, Levels, PresetPair, QuadricCount};
 use super::report::{ModelReport, ZtReport};
+use super::summary::MeanImprovement;
 use crate::pipeline::{Metric, Preset};
 use crate::report::paper;
 use crate::report::table::thousands;
@@ -15,7 +16,7 @@ pub(super) const TABLE1: &str = "V(M) is the share of directions from which the 
 pub(super) const TABLE2: &str = "QB collapses by quadric error alone, VG also by visibility: seconds first, without looking. The \
     last columns tell by how much the image error of VG is below that of QB, mean over the levels; below zero VG is worse. At \
     equal counts: over those levels alone at which both have the triangles that were asked for, and how many these are. VG best \
-    deletes hidden triangles first and can be left with fewer; having fewer can only hurt its pictures.";
+    deletes hidden triangles first and can be left with fewer; having fewer is no help to its pictures.";
 pub(super) const GAINS: &str = "By how much the image error of VG is below that of QB (%), mean over the models, how many in \
     brackets; V(M) is the first of table 1. Then Spearman's rank correlation of V(M), as either preset counts it, with that \
     improvement; -1: the less visible a model is, the more is gained.";
@@ -60,6 +61,27 @@ impl ZtReport {
         );
         notes.extend(paper::NOTES.iter().map(|note| format!("In the paper, {note}.")));
         notes
+    }
+
+    /// What came out, for who reads no further; then what is left out.
+    pub(super) fn summary_in_words(&self) -> String {
+        let verdict = self.summary.iter().rfind(|summary| summary.levels == Levels::All).map(|summary| {
+            let sides = [
+                ("where less than half of a model is seen", summary.below_half),
+                ("where half or more is seen", summary.from_half),
+            ];
+            let side = |(place, mean): (&str, MeanImprovement)| {
+                Some(format!("{:.1} % {place} (models: {})", mean.less_error?, mean.models))
+            };
+            let sides: Vec<String> = sides.into_iter().filter_map(side).collect();
+            format!(
+                "VG collapses by shape and visibility, QB by shape alone. With the options of preset {}, the image error of VG at \
+                 the same number of triangles is below that of QB by {}.",
+                summary.visibility.name(),
+                sides.join(", by ")
+            )
+        });
+        verdict.into_iter().chain(self.left_out_in_words()).collect::<Vec<_>>().join(" ")
     }
 
     /// Which models of the directory this report leaves out; `None` if it leaves out none.
@@ -117,7 +139,7 @@ fn unequal(run: &RunFinding, fewer: bool) -> Option<String> {
     let [most, least] = [first, last].map(|level| thousands(level.triangles as u64));
     let left = if most == least { most } else { format!("{most} to {least}") };
     let why = match (fewer, run.hidden_deleted) {
-        (true, 1..) => "since hidden triangles are deleted first; having fewer can only hurt its pictures",
+        (true, 1..) => "since hidden triangles are deleted first; having fewer is no help to its pictures",
         (true, 0) => "fewer than were asked for, since a collapse took more at once",
         (false, _) => "more than were asked for, since nothing else may be collapsed",
     };

@@ -15,7 +15,7 @@ pub const MODELS: [PaperModel; 10] = [
         table2: second(0.764, [30, 14], [3, 6], 2.12),
         figures: &[2, 3, 4, 8],
         pictures: &[PaperPicture { figure: 8, triangles: 20_000 }],
-        notes: &["the paper prints 1,087,416 triangles; the file in circulation has 1,087,716"],
+        notes: &["the count is 1,087,416; the file in circulation has 1,087,716"],
         ..plain("Buddha", 1_087_416)
     },
     PaperModel { table1: first(0.728, [4, 35]), figures: &[2], ..plain("Locking Tori", 9_708) },
