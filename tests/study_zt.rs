@@ -22,7 +22,7 @@ fn request(home: &Path, meshes: &[(&str, TriMesh)]) -> ZtRequest {
         let path = home.join(format!("{name}.ply"));
         let overwrite = WriteOptions { force: true, format: None };
         io::write(&path, mesh, &Attributes::default(), &overwrite).unwrap();
-        ZtModel { name: (*name).to_owned(), path, paper: None }
+        ZtModel { name: (*name).to_owned(), path, paper: None, up: [0.0, 0.0, 1.0] }
     };
     ZtRequest {
         models: meshes.iter().map(model).collect(),
@@ -34,7 +34,6 @@ fn request(home: &Path, meshes: &[(&str, TriMesh)]) -> ZtRequest {
         cameras: Some(18),
         resolution: Some(128),
         convergence: false,
-        up: [0.0, 0.0, 1.0],
         memory_limit: None,
         output: home.join("zt"),
     }

@@ -120,6 +120,15 @@ pub fn direction(text: &str) -> Result<[f64; 3], String> {
     if usable { Ok(xyz) } else { Err(form.to_owned()) }
 }
 
+/// A direction `x,y,z` of all, or of one as `NAME=x,y,z`.
+pub fn direction_of(text: &str) -> Result<(Option<String>, [f64; 3]), String> {
+    match text.rsplit_once('=') {
+        Some(("", _)) => Err("write NAME=x,y,z, or x,y,z for all".to_owned()),
+        Some((name, xyz)) => Ok((Some(name.to_owned()), direction(xyz)?)),
+        None => Ok((None, direction(text)?)),
+    }
+}
+
 /// A side: `+y`, `-z`, or a direction `x,y,z`.
 pub fn side(text: &str) -> Result<[f64; 3], String> {
     let sign = match text.as_bytes().first() {
@@ -194,6 +203,15 @@ mod tests {
         assert_eq!(direction("1, 0,-2"), Ok([1.0, 0.0, -2.0]));
         for wrong in ["", "1,2", "0,0,0", "1,2,3,4", "nan,0,1", "1,,2"] {
             assert!(direction(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn directions_are_of_all_or_of_one() {
+        assert_eq!(direction_of("0,1,0"), Ok((None, [0.0, 1.0, 0.0])));
+        assert_eq!(direction_of("a=b=0,1,0"), Ok((Some("a=b".to_owned()), [0.0, 1.0, 0.0])));
+        for wrong in ["=0,1,0", "a=", "a=0,0,0", "a"] {
+            assert!(direction_of(wrong).is_err(), "{wrong}");
         }
     }
 

@@ -66,8 +66,6 @@ pub struct ZtRequest {
     pub resolution: Option<u32>,
     /// Also how V depends on the number of cameras (Fig. 3).
     pub convergence: bool,
-    /// Upward in pictures, any length but 0.
-    pub up: [f64; 3],
     /// Bytes that the images of all threads together may take.
     pub memory_limit: Option<u64>,
     /// The study's directory.
@@ -83,6 +81,8 @@ pub struct ZtModel {
     pub path: PathBuf,
     /// Which of the paper's models it is or stands for.
     pub paper: Option<&'static PaperModel>,
+    /// Upward in its pictures, any length but 0.
+    pub up: [f64; 3],
 }
 
 /// A cell that a study needs.
@@ -111,6 +111,8 @@ pub struct ModelFindings {
     pub file: PathBuf,
     /// Its triangles.
     pub triangles: usize,
+    /// Upward in its pictures.
+    pub up: [f64; 3],
     /// Visibility, one entry per preset.
     pub looks: Vec<LookFinding>,
     /// The simplifiers, QB and VG of each preset.
@@ -168,6 +170,7 @@ fn study_model(model: &ZtModel, request: &ZtRequest, observer: &dyn Observer) ->
         name: model.name.clone(),
         file: model.path.clone(),
         triangles: bench.triangles(),
+        up: model.up,
         looks: Vec::new(),
         runs: Vec::new(),
         pictures: Vec::new(),
@@ -253,7 +256,7 @@ impl ZtRequest {
     fn words(&self, model: &ZtModel, cell: Cell) -> String {
         let read = ReadOptions { memory_limit: None, ..self.read.clone() };
         let look =
-            |preset| format!("{:?} up {:?}", MeasureOptions { memory_limit: None, ..self.measure(preset) }, self.up);
+            |preset| format!("{:?} up {:?}", MeasureOptions { memory_limit: None, ..self.measure(preset) }, model.up);
         let paper = model.paper.map(|paper| (paper.pictures, paper.equal_error));
         let run =
             || format!("levels {:?}, counts {paper:?}, {} samples, seed {}", self.levels, self.samples, self.seed);

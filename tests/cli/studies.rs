@@ -101,3 +101,25 @@ fn zt_leaves_foreign_directories_alone_and_knows_the_papers_models() {
     assert_eq!(alike.code, 2);
     assert!(!home.path().join("zt").exists());
 }
+
+#[test]
+fn zt_turns_one_model_up_and_keeps_what_was_found_of_the_others() {
+    let home = directory();
+    fs::copy(home.path().join("cube.off"), home.path().join("box.off")).unwrap();
+    let study = ["study", "zt", "cube.off", "box.off", "-o", "zt", "--preset", "best", "--levels", "0.5"];
+    let study = [&study[..], &SMALL, &["--samples", "100", "--no-convergence", "--json"]].concat();
+    json(home.path(), &study);
+    let turned = [&study[..], &["--up", "0,0,1", "--up", "box=0,1,0"]].concat();
+    let plan = json(home.path(), &[&turned[..], &["--dry-run"]].concat());
+    let anew = |name: &str| {
+        let cells = plan["cells"].as_array().unwrap().iter().filter(|cell| cell["model"] == name);
+        cells.filter(|cell| cell["done"] == false).count()
+    };
+    assert_eq!((anew("cube"), anew("box")), (0, 5));
+    let object = json(home.path(), &turned);
+    assert_eq!((&object["models"][0]["up"][2], &object["models"][1]["up"][1]), (&1.0.into(), &1.0.into()));
+
+    let stranger = run(home.path(), &[&study[..], &["--up", "ball=0,1,0"]].concat());
+    assert_eq!(stranger.code, 2);
+    assert!(stranger.err.contains("no model is called ball; there is cube, box"), "{}", stranger.err);
+}

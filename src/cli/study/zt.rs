@@ -13,7 +13,7 @@ use serde::Serialize;
 use crate::cli::console::Console;
 use crate::cli::estimate::{Task, study_seconds};
 use crate::cli::failure::Failure;
-use crate::cli::flags::{ReadingFlags, UpFlags};
+use crate::cli::flags::ReadingFlags;
 use crate::cli::system::peak_mib;
 use crate::cli::text::{duration, table};
 use crate::cli::values;
@@ -51,9 +51,14 @@ pub struct Flags {
     /// Print what would be computed, and how long it may take
     #[arg(long)]
     dry_run: bool,
-    #[command(flatten)]
-    up: UpFlags,
+    /// Direction that points up in pictures, of all models, or of one as in bunny=0,1,0; may be given several times
+    /// [default: 0,0,1]
+    #[arg(long, value_name = "[NAME=]X,Y,Z", value_parser = values::direction_of)]
+    up: Vec<(Option<String>, [f64; 3])>,
 }
+
+/// Upward where nobody says otherwise.
+const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum Presets {
@@ -85,7 +90,7 @@ struct Object<'a> {
 impl Flags {
     fn request(&self, console: &Console) -> Result<ZtRequest> {
         Ok(ZtRequest {
-            models: self.models.iter().map(model).collect::<Result<_>>()?,
+            models: self.studied()?,
             read: self.reading.options(&console.global),
             presets: match self.preset {
                 Presets::Paper => vec![Preset::Paper],
@@ -98,10 +103,27 @@ impl Flags {
             cameras: self.cameras,
             resolution: self.resolution,
             convergence: !self.no_convergence,
-            up: self.up.up,
             memory_limit: console.global.memory_limit,
             output: self.output.clone(),
         })
+    }
+
+    /// The models, each the way up that was said of it, or else of all.
+    fn studied(&self) -> Result<Vec<ZtModel>> {
+        let mut models = self.models.iter().map(model).collect::<Result<Vec<_>>>()?;
+        let of_one = self.up.iter().filter_map(|(name, _)| name.as_ref());
+        if let Some(stranger) = of_one.into_iter().find(|name| models.iter().all(|model| &model.name != *name)) {
+            let names: Vec<&str> = models.iter().map(|model| model.name.as_str()).collect();
+            let message = format!("no model is called {stranger}; there is {}", names.join(", "));
+            return Err(Error::Option { name: "--up", message });
+        }
+        for model in &mut models {
+            let said = |wanted: Option<&String>| self.up.iter().rfind(|(name, _)| name.as_ref() == wanted);
+            if let Some((_, up)) = said(Some(&model.name)).or_else(|| said(None)) {
+                model.up = *up;
+            }
+        }
+        Ok(models)
     }
 }
 
@@ -114,7 +136,7 @@ fn model(argument: &OsString) -> Result<ZtModel> {
         let message = format!("{} has no name that files could be named after", named.file.display());
         return Err(Error::Option { name: "MODELS", message });
     }
-    Ok(ZtModel { name, path: named.file, paper: named.model })
+    Ok(ZtModel { name, path: named.file, paper: named.model, up: UP })
 }
 
 /// Studies the models, or says what that would take.
@@ -142,7 +164,6 @@ fn options(request: &ZtRequest) -> serde_json::Value {
         "cameras": request.cameras,
         "resolution": request.resolution,
         "convergence": request.convergence,
-        "up": request.up,
     })
 }
 

@@ -175,7 +175,7 @@ impl<'a> Bench<'a> {
             reference: Portrait { name: "original".to_owned(), mesh: self.mesh(), image_rmse: None },
             tests: tests.collect(),
             order: ColumnOrder::ReferenceBetween,
-            up: DVec3::from_array(self.request.up),
+            up: DVec3::from_array(self.model.up),
         };
         sheet.draw()
     }
@@ -225,7 +225,7 @@ impl<'a> Bench<'a> {
     }
 
     fn heat_map(&self, visibility: &Visibility) -> Result<Picture> {
-        let up = DVec3::from_array(self.request.up);
+        let up = DVec3::from_array(self.model.up);
         let shot = Shot::fitting(self.mesh(), views_around(up)[0], up.normalize(), HEAT_MAP);
         let picture = heat_picture(
             &Gallery::new(self.mesh(), self.mesh()),

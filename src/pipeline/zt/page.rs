@@ -86,7 +86,7 @@ impl ModelReport {
                 sections.push(figures(&heading, "", 1, vec![sheet]));
             }
         }
-        sections.extend(self.viewer(request));
+        sections.extend(self.viewer());
         Ok(sections)
     }
 
@@ -97,10 +97,10 @@ impl ModelReport {
         shown.map_or_else(String::new, |picture| format!(" (Fig. {})", picture.figure))
     }
 
-    fn viewer(&self, request: &ZtRequest) -> Option<Section> {
+    fn viewer(&self) -> Option<Section> {
         let models = self.findings.viewer.as_ref().map(|viewer| viewer.models.clone()).filter(|m| !m.is_empty())?;
-        let [toward, ..] = views_around(glam::DVec3::from_array(request.up)).map(|d| d.to_array());
-        let viewer = Viewer { models, legend: Some(legend()), toward, up: request.up };
+        let [toward, ..] = views_around(glam::DVec3::from_array(self.findings.up)).map(|d| d.to_array());
+        let viewer = Viewer { models, legend: Some(legend()), toward, up: self.findings.up };
         Some(section(&format!("{}, in three dimensions", self.findings.name), "", Content::Viewer(viewer)))
     }
 
