@@ -295,8 +295,25 @@ fn page_and_tables_show_both_presets_and_what_they_leave_out() {
         );
     }
     let heads = report.table2().heads();
-    assert_eq!(heads, ["model", "V(M)", "QB best (s)", "VG best (s)", "VG best (% less than QB best)"]);
+    assert_eq!(heads, ["model", "of the paper", "V(M)", "QB best (s)", "VG best (s)", "VG best (% less than QB best)"]);
     assert!(read("tables.md").contains("QB and VG were not studied"));
+}
+
+#[test]
+fn of_many_models_those_of_which_least_is_seen_can_be_turned() {
+    let home = tempfile::tempdir().unwrap();
+    let names = ["a", "b", "c", "d", "e", "f"];
+    let mut meshes = names.map(|name| (name, shapes::tetrahedron())).to_vec();
+    meshes.insert(2, ("hollow", shapes::nested_spheres(0.5, 1).mesh));
+    let seven = request(home.path(), &meshes);
+    let report = study_zt(&seven, &Silent).unwrap();
+    report.write(&seven, "{}").unwrap();
+    let turned = |name: &str| model(&report, name).findings.viewer.is_some();
+    assert!(turned("hollow"));
+    assert_eq!(names.into_iter().filter(|name| turned(name)).count(), 5);
+    let page = fs::read_to_string(seven.output.join("report.html")).unwrap();
+    assert_eq!(page.matches("<canvas").count(), 12, "original and result of six");
+    assert!(page.contains("The 6 models of which least is seen can be turned"));
 }
 
 #[test]

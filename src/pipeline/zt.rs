@@ -45,6 +45,9 @@ use store::Store;
 /// evenly over the logarithmic axis of figure 4.
 pub const LEVELS: [f64; 7] = [0.5, 0.25, 0.125, 0.0625, 0.031_25, 0.015_625, 0.007_812_5];
 
+/// Most models that can be turned on a page; they share its bytes.
+const MOST_VIEWERS: usize = 6;
+
 /// What [`study_zt`] does.
 #[derive(Debug, Clone)]
 pub struct ZtRequest {
@@ -224,6 +227,11 @@ impl ZtRequest {
         self.presets.iter().try_for_each(|&preset| self.measure(preset).check())
     }
 
+    /// Models of the page that can be turned; with more of them each would be too coarse beside its result.
+    fn viewers(&self) -> usize {
+        self.models.len().min(MOST_VIEWERS)
+    }
+
     /// How a model is looked at.
     fn measure(&self, preset: Preset) -> MeasureOptions {
         let options = preset.measure();
@@ -267,7 +275,7 @@ impl ZtRequest {
             }
             Cell::Viewer => {
                 let presets: Vec<String> = self.presets.iter().map(|&preset| look(preset)).collect();
-                format!("{read:?} {presets:?} {} {} models", run(), self.models.len())
+                format!("{read:?} {presets:?} {} {} models", run(), self.viewers())
             }
             Cell::Convergence => format!("{read:?} {:?}", self.measure(Preset::Paper).resolution),
         }

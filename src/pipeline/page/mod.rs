@@ -252,5 +252,5 @@ fn in_words(direction: [f64; 3]) -> String {
 
 /// A section of a page.
 pub(super) fn section(heading: &str, text: &str, content: Content) -> Section {
-    Section { heading: heading.to_owned(), text: text.to_owned(), content }
+    Section { heading: heading.to_owned(), text: text.to_owned(), content, within: false }
 }

@@ -194,7 +194,7 @@ impl<'a> Bench<'a> {
         });
         let result = result.transpose()?;
         let exhibits: Vec<&Exhibit> = std::iter::once(&original).chain(&result).collect();
-        let share = MODELS_BYTES / self.request.models.len();
+        let share = MODELS_BYTES / self.request.viewers();
         Ok(ViewerFinding { models: models(&exhibits, share, self.observer)? })
     }
 

@@ -22,16 +22,16 @@ impl ZtReport {
     /// The page; pictures that it shows are read from the study's directory.
     pub(super) fn page(&self, request: &ZtRequest, plots: &[Plot]) -> Result<Page> {
         let room = Room::of(self, plots);
-        let mut sections = vec![
-            section("Summary", &self.summary_in_words(), Content::Summary(self.facts())),
-            section("Table 1: visibility", words::TABLE1, Content::Table(cells(&self.table1()))),
-            section("Table 2: less image error", words::TABLE2, Content::Table(cells(&self.table2()))),
-            section("Who gains", words::GAINS, Content::Table(cells(&self.gains_table()))),
-        ];
+        let mut sections = vec![section("Summary", &self.summary_in_words(), Content::Summary(self.facts()))];
         let correlation: Vec<Figure> = plots.iter().filter(|plot| plot.model.is_none()).map(Plot::figure).collect();
         if !correlation.is_empty() {
             sections.push(figures("Improvement by visibility", "", 1, correlation));
         }
+        sections.extend([
+            section("Table 1: visibility", words::TABLE1, Content::Table(cells(&self.table1()))),
+            section("Table 2: less image error", words::TABLE2, Content::Table(cells(&self.table2()))),
+            section("Who gains", words::GAINS, Content::Table(cells(&self.gains_table()))),
+        ]);
         let outline = request.output.join("outline.png");
         let outline = room.figure(Part::Diagram, &outline, "visibility diagram of an outline".to_owned())?;
         sections.push(figures("Figure 1: a visibility diagram", OUTLINE, 1, vec![outline]));
@@ -87,6 +87,7 @@ impl ModelReport {
             }
         }
         sections.extend(self.viewer());
+        sections.iter_mut().skip(1).for_each(|part| part.within = true);
         Ok(sections)
     }
 

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::cell::{LookFinding, RunFinding};
 use super::gain::{Improvement, Levels, PAIRS, PresetPair};
 use super::summary::ImprovementSummary;
-use super::{ModelFindings, ZtModel};
+use super::{MOST_VIEWERS, ModelFindings, ZtModel};
 use crate::pipeline::{Metric, Preset};
 use crate::report::paper::Stand;
 
@@ -36,7 +36,9 @@ pub struct ModelReport {
 
 impl ZtReport {
     pub(super) fn of(models: &[ZtModel], findings: Vec<ModelFindings>, left_out: Vec<String>) -> Self {
-        let models: Vec<_> = models.iter().zip(findings).map(|(model, found)| ModelReport::of(model, found)).collect();
+        let mut models: Vec<_> =
+            models.iter().zip(findings).map(|(model, found)| ModelReport::of(model, found)).collect();
+        leave_viewers_to_the_least_visible(&mut models);
         let summary = ImprovementSummary::of_all(&models);
         Self { models, summary, left_out }
     }
@@ -46,6 +48,16 @@ impl ZtReport {
     pub fn presets(&self) -> Vec<Preset> {
         let studied = |preset: &Preset| self.models.iter().any(|model| model.look(*preset).is_some());
         Preset::ALL.into_iter().filter(studied).collect()
+    }
+}
+
+/// Of more than [`MOST_VIEWERS`] models only those of which least is seen can be turned: there the comparison tells most.
+fn leave_viewers_to_the_least_visible(models: &mut [ModelReport]) {
+    let seen = |model: &ModelReport| model.table_visibility().unwrap_or(1.0);
+    let mut order: Vec<usize> = (0..models.len()).collect();
+    order.sort_by(|&a, &b| seen(&models[a]).total_cmp(&seen(&models[b])));
+    for number in order.into_iter().skip(MOST_VIEWERS) {
+        models[number].findings.viewer = None;
     }
 }
 

@@ -1,10 +1,10 @@
 //! What stands beside the tables and figures: the same words on the page and in Markdown.
 
-use super::ZtRequest;
 use super::cell::{LevelFinding, RunFinding};
 use super::gain::{Improvement, Levels, PresetPair, QuadricCount};
 use super::report::{ModelReport, ZtReport};
 use super::summary::MeanImprovement;
+use super::{MOST_VIEWERS, ZtRequest};
 use crate::pipeline::{Metric, Preset};
 use crate::report::paper;
 use crate::report::table::thousands;
@@ -54,6 +54,11 @@ impl ZtReport {
                 "The paper's QB and VG were not studied (--preset paper, or both), so nothing is compared with them."
                     .to_owned(),
             );
+        }
+        if self.models.len() > MOST_VIEWERS {
+            notes.push(format!(
+                "The {MOST_VIEWERS} models of which least is seen can be turned; a study of fewer shows the others so, too."
+            ));
         }
         notes.push(
             "Times are wall time of this machine; the paper's, in minutes, are of an SGI Octane with 195 MHz."

@@ -42,6 +42,7 @@ pub(super) fn document(page: &Page) -> Markup {
                     }
                     (theme_switch())
                 }
+                @if page.sections.iter().any(|section| section.within) { (contents(&page.sections)) }
                 main { @for (number, section) in page.sections.iter().enumerate() { (section_markup(number, section)) } }
                 footer { p { "Made by Outsight " (env!("CARGO_PKG_VERSION")) ". This file is complete: it loads nothing." } }
                 @for script in scripts { script { (PreEscaped(script)) } }
@@ -70,11 +71,24 @@ fn theme_switch() -> Markup {
     }
 }
 
+/// Links to all sections but those that are parts of others.
+fn contents(sections: &[Section]) -> Markup {
+    html! {
+        nav aria-label="Contents" {
+            ul {
+                @for (number, section) in sections.iter().enumerate().filter(|(_, section)| !section.within) {
+                    li { a href={ "#section-" (number) } { (section.heading) } }
+                }
+            }
+        }
+    }
+}
+
 fn section_markup(number: usize, section: &Section) -> Markup {
     let id = format!("section-{number}");
     html! {
         section aria-labelledby=(id) {
-            h2 id=(id) { (section.heading) }
+            @if section.within { h3 id=(id) { (section.heading) } } @else { h2 id=(id) { (section.heading) } }
             @if !section.text.is_empty() { p class="lead" { (section.text) } }
             @match &section.content {
                 Content::Summary(facts) => { (summary(facts)) }

@@ -44,6 +44,8 @@ pub struct Section {
     pub text: String,
     /// What it shows.
     pub content: Content,
+    /// It belongs to what stands above it. A page with such sections begins with links to the others.
+    pub within: bool,
 }
 
 /// What a section shows.

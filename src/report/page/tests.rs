@@ -17,7 +17,7 @@ fn packed() -> PackedModel {
 /// A page with one section of each kind, `name` wherever text may stand.
 fn page(name: &str) -> Page {
     let text = || name.to_owned();
-    let section = |content| Section { heading: text(), text: text(), content };
+    let section = |content| Section { heading: text(), text: text(), content, within: false };
     let images = [Image::Png(vec![1, 2, 3]), Image::Svg("<svg>".to_owned())];
     let figures = images.map(|image| Figure { image, caption: text() }).to_vec();
     let legend = Legend { title: text(), map: ColourMap::Cividis, low: text(), high: text() };
@@ -73,7 +73,12 @@ fn a_page_past_its_limit_is_refused() {
     let image = Image::Png(vec![0; 3 * MAX_BYTES / 4]);
     assert_eq!(image.embedded_bytes(), MAX_BYTES);
     let figures = Figures { columns: 1, figures: vec![Figure { image, caption: String::new() }] };
-    page.sections.push(Section { heading: String::new(), text: String::new(), content: Content::Figures(figures) });
+    page.sections.push(Section {
+        heading: String::new(),
+        text: String::new(),
+        content: Content::Figures(figures),
+        within: false,
+    });
     let error = page.to_html().unwrap_err();
     assert_eq!((error.exit_code(), error.to_string().contains("fewer meshes")), (5, true), "{error}");
 }
@@ -85,4 +90,16 @@ fn the_vendored_viewer_brings_its_licence_and_ends_no_script() {
     for script in [three, include_str!("page.js")] {
         assert!(!script.to_lowercase().contains("</script") && !script.contains("<!--"));
     }
+}
+
+#[test]
+fn a_page_of_parts_begins_with_links_to_what_they_are_parts_of() {
+    let mut page = page("a & b");
+    assert!(!page.to_html().unwrap().contains("<nav"));
+    page.sections[1].within = true;
+    let html = page.to_html().unwrap();
+    let contents = html.split("<nav").nth(1).unwrap().split("</nav>").next().unwrap();
+    let link = |number: usize| contents.contains(&format!("<a href=\"#section-{number}\">a &amp; b</a>"));
+    assert_eq!([0, 1, 2].map(link), [true, false, true]);
+    assert!(html.contains("<h3 id=\"section-1\">") && html.contains("<h2 id=\"section-2\">"));
 }
