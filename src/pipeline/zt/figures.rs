@@ -32,7 +32,7 @@ pub(super) struct Room {
 const WIDEST: u32 = 1184;
 /// A picture is made no narrower than this, and a strip no lower, however little room there is.
 const NARROWEST: u32 = 160;
-const LOWEST: u32 = 96;
+const LOWEST: u32 = 48;
 /// Aims a little below the share, so that it is met at once.
 const CAUTION: f64 = 0.9;
 
