@@ -48,7 +48,7 @@ pub use verify::{PairReport, VerifyReport, VerifyRequest, verify_file};
 pub use zt::{
     Cell, Correlation, EqualError, Improvement, ImprovementSummary, LEVELS, LevelErrors, LevelFinding, Levels,
     LookFinding, MeanImprovement, ModelFindings, ModelReport, PicturesFinding, PlannedCell, PresetPair, QuadricCount,
-    RunFinding, SheetFinding, ViewerFinding, ZtModel, ZtReport, ZtRequest, plan_zt, study_zt,
+    RunFinding, SheetFinding, ShownPicture, ViewerFinding, ZtModel, ZtReport, ZtRequest, plan_zt, study_zt,
 };
 
 use std::path::Path;

@@ -15,6 +15,7 @@ use outsight::pipeline::{
     plan_zt, study_zt,
 };
 use outsight::progress::{Progress, Silent};
+use outsight::report::paper::PaperModel;
 
 /// Models of the study, few cameras, small pictures.
 fn request(home: &Path, meshes: &[(&str, TriMesh)]) -> ZtRequest {
@@ -22,7 +23,7 @@ fn request(home: &Path, meshes: &[(&str, TriMesh)]) -> ZtRequest {
         let path = home.join(format!("{name}.ply"));
         let overwrite = WriteOptions { force: true, format: None };
         io::write(&path, mesh, &Attributes::default(), &overwrite).unwrap();
-        ZtModel { name: (*name).to_owned(), path, paper: None, up: [0.0, 0.0, 1.0] }
+        ZtModel { name: (*name).to_owned(), path, paper: None, stand_in: false, up: [0.0, 0.0, 1.0] }
     };
     ZtRequest {
         models: meshes.iter().map(model).collect(),
@@ -36,6 +37,7 @@ fn request(home: &Path, meshes: &[(&str, TriMesh)]) -> ZtRequest {
         convergence: false,
         memory_limit: None,
         output: home.join("zt"),
+        page: None,
     }
 }
 
@@ -262,7 +264,7 @@ fn page_and_tables_show_both_presets_and_what_they_leave_out() {
     let both = ZtRequest { presets: Preset::ALL.to_vec(), ..request(home.path(), &[("ball", shapes::icosphere(2))]) };
     let read = |file: &str| fs::read_to_string(both.output.join(file)).unwrap();
     let report = study_zt(&both, &Silent).unwrap();
-    report.write(&both, "{}").unwrap();
+    report.write(&both, "{}", &["outsight study zt <ball>".to_owned()]).unwrap();
     assert!(report.left_out.is_empty());
     assert_eq!(report.summary.len(), 6, "three pairs of simplifiers at two choices of levels");
     assert!(report.summary.iter().all(|summary| summary.correlations.len() == 2), "as either preset counts V");
@@ -274,6 +276,10 @@ fn page_and_tables_show_both_presets_and_what_they_leave_out() {
         "ball, side by side, preset paper",
         "ball, side by side, preset best",
         "ball: errors by level",
+        "original: 320 triangles",
+        "difference of VG",
+        "0: no camera sees it",
+        "<code>outsight study zt &lt;ball&gt;</code>",
     ] {
         assert!(page.contains(text), "{text}");
     }
@@ -286,7 +292,7 @@ fn page_and_tables_show_both_presets_and_what_they_leave_out() {
     fs::create_dir(both.output.join("cells/bumps")).unwrap();
     let alone = ZtRequest { presets: vec![Preset::Best], ..both.clone() };
     let report = study_zt(&alone, &Silent).unwrap();
-    report.write(&alone, "{}").unwrap();
+    report.write(&alone, "{}", &[]).unwrap();
     assert_eq!(report.left_out, ["bumps"]);
     for file in ["report.html", "tables.md"] {
         assert!(
@@ -299,6 +305,35 @@ fn page_and_tables_show_both_presets_and_what_they_leave_out() {
     assert!(read("tables.md").contains("QB and VG were not studied"));
 }
 
+/// A strip with the triangles of the paper's interlocking tori, and nothing else of them.
+#[test]
+fn a_stand_in_of_the_same_count_is_one_where_somebody_says_so() {
+    let home = tempfile::tempdir().unwrap();
+    let corner = |i: u32| DVec3::new(f64::from(i), f64::from(i % 2) * 100.0, 0.0);
+    let triangles = (0..9_708).map(|i| [i, i + 1, i + 2]).collect();
+    let strip = TriMesh::new((0..9_710).map(corner).collect(), triangles).unwrap();
+    let mut request = request(home.path(), &[("strip", strip)]);
+    request.models[0].paper = PaperModel::named("locking_tori");
+    let remarks = |request: &ZtRequest| model(&study_zt(request, &Silent).unwrap(), "strip").remarks();
+    assert!(remarks(&request).starts_with("Has the name and the count of the paper's Locking Tori"));
+    request.models[0].stand_in = true;
+    assert!(remarks(&request).starts_with("Stand-in for Locking Tori: 9,708 triangles, as many as printed;"));
+}
+
+#[test]
+fn few_models_have_no_rank_correlation() {
+    let home = tempfile::tempdir().unwrap();
+    let radii = [1.0, 0.9, 0.8, 0.7, 0.6];
+    let meshes = ["a", "b", "c", "d", "e"].map(|name| (name, onion(&radii[..=usize::from(name.as_bytes()[0] - b'a')])));
+    let ranked = |meshes: &[(&str, TriMesh)]| {
+        let request = ZtRequest { levels: vec![0.2], ..request(home.path(), meshes) };
+        study_zt(&request, &Silent).unwrap().summary[0].rank_correlation(Preset::Best)
+    };
+    assert_eq!(ranked(&meshes[..4]), None);
+    // The more shells are hidden, the more VG has left for the one that is seen.
+    assert_eq!(ranked(&meshes), Some(-1.0));
+}
+
 #[test]
 fn of_many_models_those_of_which_least_is_seen_can_be_turned() {
     let home = tempfile::tempdir().unwrap();
@@ -307,7 +342,7 @@ fn of_many_models_those_of_which_least_is_seen_can_be_turned() {
     meshes.insert(2, ("hollow", shapes::nested_spheres(0.5, 1).mesh));
     let seven = request(home.path(), &meshes);
     let report = study_zt(&seven, &Silent).unwrap();
-    report.write(&seven, "{}").unwrap();
+    report.write(&seven, "{}", &[]).unwrap();
     let turned = |name: &str| model(&report, name).findings.viewer.is_some();
     assert!(turned("hollow"));
     assert_eq!(names.into_iter().filter(|name| turned(name)).count(), 5);

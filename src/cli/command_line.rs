@@ -42,12 +42,16 @@ fn occurrences(arg: &Arg, matches: &ArgMatches) -> Vec<Vec<String>> {
     given.map(|values| words(values.collect())).collect()
 }
 
-/// Whatever has a separator of folders in it is a file.
+/// Whatever has a separator of folders in it is a file, and may have a name before it, as in `motor=parts/engine.ply`.
 fn without_folders(words: Vec<String>) -> Vec<String> {
-    let paths: Vec<&Path> = words.iter().map(Path::new).collect();
-    let names = shown_names(&paths);
-    let has_folders = |word: &String| word.contains(std::path::is_separator);
-    words.iter().zip(names).map(|(word, name)| if has_folders(word) { name } else { word.clone() }).collect()
+    let has_folders = |path: &str| path.contains(std::path::is_separator);
+    let named = |word: &str| word.find('=').map_or(0, |at| if has_folders(&word[..at]) { 0 } else { at + 1 });
+    let parts: Vec<(&str, &str)> = words.iter().map(|word| word.split_at(named(word))).collect();
+    let names = shown_names(&parts.iter().map(|(_, path)| Path::new(path)).collect::<Vec<_>>());
+    let shown = parts.iter().zip(names).map(|((before, path), name)| {
+        if has_folders(path) { format!("{before}{name}") } else { format!("{before}{path}") }
+    });
+    shown.collect()
 }
 
 #[cfg(test)]
@@ -92,5 +96,7 @@ mod tests {
             shown(&["study", "convergence", "a.ply", "-o", "d/"]),
             "outsight study convergence a.ply --output d"
         );
+        let typed = ["study", "zt", "motor=/x/engine.ply", "skull=/x/a=b/h.ply", "/a=b/c.ply", "-o", "zt/"];
+        assert_eq!(shown(&typed), "outsight study zt 'motor=engine.ply' 'skull=h.ply' c.ply --output zt");
     }
 }

@@ -78,6 +78,18 @@ pub fn ratio(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A share of the triangles, in (0, 1).
+pub fn share(text: &str) -> Result<f64, String> {
+    let meaning = "a level is a share of the triangles, above 0 and below 1";
+    match text.strip_suffix('%').unwrap_or(text).parse::<f64>() {
+        Ok(number) if is_share(text) => Ok(number),
+        Ok(percent) if (1.0..100.0).contains(&percent) => {
+            Err(format!("{meaning}; for {percent} % write {}", short_number(percent / 100.0)))
+        }
+        _ => Err(meaning.to_owned()),
+    }
+}
+
 fn is_share(text: &str) -> bool {
     text.parse::<f64>().is_ok_and(|n| n > 0.0 && n < 1.0)
 }
@@ -168,6 +180,18 @@ mod tests {
         assert!(ratio("5000").is_err_and(|m| m.ends_with("write --triangles 5000")));
         for wrong in ["0", "-0.1", "nan", "inf", "x"] {
             assert!(ratio(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn shares_lie_between_none_and_all() {
+        assert_eq!(share("0.0078125"), Ok(0.007_812_5));
+        for percent in ["1.5", "1.5%"] {
+            assert!(share(percent).is_err_and(|m| m.ends_with("for 1.5 % write 0.015")), "{percent}");
+        }
+        assert!(share("1").is_err_and(|m| m.ends_with("for 1 % write 0.01")));
+        for wrong in ["0", "-0.1", "100", "nan", "inf", "0.5x", ""] {
+            assert!(share(wrong).is_err_and(|m| m.ends_with("below 1")), "{wrong}");
         }
     }
 

@@ -5,8 +5,9 @@ use crate::eval::{Gallery, Shot};
 use crate::mesh::TriMesh;
 use crate::pipeline::compare::views_around;
 use crate::raster::GreyImage;
-use crate::report::contact_sheet::{Column, ContactSheet, Images, mesh_caption};
-use crate::report::picture::Picture;
+use crate::report::colour::mix;
+use crate::report::contact_sheet::{Column, ContactSheet, FULL_RED, Images, RED, mesh_caption};
+use crate::report::picture::{Area, Picture, WHITE};
 
 /// Pixels along the side of a picture on the sheet.
 const PICTURE_WIDTH: u32 = 400;
@@ -50,31 +51,72 @@ pub enum ColumnOrder {
     ReferenceBetween,
 }
 
+/// A picture and what it shows.
+pub(super) struct Captioned {
+    pub caption: String,
+    pub picture: Picture,
+}
+
+/// The pictures of a sheet, taken.
+pub(super) struct Taken<'a> {
+    asked: &'a SideBySide<'a>,
+    original: Pictures,
+    others: Vec<Pictures>,
+}
+
 impl SideBySide<'_> {
     /// Draws the sheet.
     ///
     /// # Errors
     /// [`crate::Error::Limit`] if a test is so much larger than the reference that it cannot be drawn beside it.
     pub fn draw(&self) -> Result<Picture> {
+        self.take()?.sheet()
+    }
+
+    /// Takes all pictures.
+    pub(super) fn take(&self) -> Result<Taken<'_>> {
         let up = self.up.normalize();
         let shots = views_around(up).map(|toward| Shot::fitting(self.reference.mesh, toward, up, PICTURE_WIDTH));
         let pictures = |portrait: &Portrait| Pictures::of(portrait.mesh, self.reference.mesh, &shots);
-        let original = pictures(&self.reference)?;
-        let others: Vec<Pictures> = self.tests.iter().map(pictures).collect::<Result<_>>()?;
-        let before = match self.order {
+        let others = self.tests.iter().map(pictures).collect::<Result<_>>()?;
+        Ok(Taken { asked: self, original: pictures(&self.reference)?, others })
+    }
+}
+
+impl Taken<'_> {
+    /// All views of all meshes, with words.
+    pub fn sheet(&self) -> Result<Picture> {
+        let SideBySide { title, subtitle, reference, tests, order, .. } = self.asked;
+        let before = match order {
             ColumnOrder::ReferenceFirst => 0,
-            ColumnOrder::ReferenceBetween => self.tests.len().div_ceil(2),
+            ColumnOrder::ReferenceBetween => tests.len().div_ceil(2),
         };
         let mut columns = Vec::new();
-        for (i, (portrait, pictures)) in self.tests.iter().zip(&others).enumerate() {
+        for (i, (portrait, pictures)) in tests.iter().zip(&self.others).enumerate() {
             let shown = portrait.column(pictures.shown());
-            let images = original.difference(pictures);
+            let images = self.original.difference(pictures);
             let difference = Column { heading: "difference".to_owned(), caption: String::new(), images };
             columns.extend(if i < before { [difference, shown] } else { [shown, difference] });
         }
-        columns.insert(2 * before, self.reference.column(original.shown()));
-        let (title, subtitle) = (self.title.clone(), self.subtitle.clone());
+        columns.insert(2 * before, reference.column(self.original.shown()));
+        let (title, subtitle) = (title.clone(), subtitle.clone());
         ContactSheet { title, subtitle, image_size: [PICTURE_WIDTH; 2], columns, ..ContactSheet::default() }.draw()
+    }
+
+    /// The first view alone: the reference, then each test and its difference, without a word in the pictures, all cropped to
+    /// the box that just holds what any of them shows.
+    pub fn first_view(&self) -> Result<Vec<Captioned>> {
+        let captioned = |caption: String, picture: Result<Picture>| Ok(Captioned { caption, picture: picture? });
+        let mut row = vec![captioned(self.asked.reference.caption(), self.original.shaded(0))];
+        for (portrait, pictures) in self.asked.tests.iter().zip(&self.others) {
+            row.push(captioned(portrait.caption(), pictures.shaded(0)));
+            row.push(captioned(format!("difference of {}", portrait.name), self.original.red(pictures, 0)));
+        }
+        let mut row = row.into_iter().collect::<Result<Vec<Captioned>>>()?;
+        if let Some(all) = row.iter().filter_map(|shown| shown.picture.drawn_area()).reduce(Area::union) {
+            row.iter_mut().for_each(|shown| shown.picture = shown.picture.cropped(all));
+        }
+        Ok(row)
     }
 }
 
@@ -82,6 +124,11 @@ impl Portrait<'_> {
     fn column<'a>(&self, images: Images<'a>) -> Column<'a> {
         let caption = mesh_caption(self.mesh.triangle_count(), self.image_rmse);
         Column { heading: self.name.clone(), caption, images }
+    }
+
+    /// All that is known of it in one line.
+    fn caption(&self) -> String {
+        format!("{}: {}", self.name, mesh_caption(self.mesh.triangle_count(), self.image_rmse))
     }
 }
 
@@ -100,6 +147,20 @@ impl Pictures {
         Ok(Self { white: over(255.0)?, black: over(0.0)? })
     }
 
+    /// A view as it is looked at.
+    pub fn shaded(&self, view: usize) -> Result<Picture> {
+        let image = &self.white[view];
+        Picture::from_grey(image.width as u32, image.width as u32, &image.pixels)
+    }
+
+    /// What differs in a view of `other`, in red.
+    pub fn red(&self, other: &Self, view: usize) -> Result<Picture> {
+        let (a, b) = (&self.black[view], &other.black[view]);
+        let differences: Vec<f32> = a.pixels.iter().zip(&b.pixels).map(|(a, b)| (a - b).abs()).collect();
+        let red = |level: f32| mix(WHITE, RED, f64::from((level / FULL_RED).min(1.0)));
+        Picture::from_values(a.width as u32, a.width as u32, &differences, red)
+    }
+
     fn shown(&self) -> Images<'_> {
         Images::Shaded(self.white.iter().map(|image| image.pixels.as_slice()).collect())
     }
@@ -116,7 +177,6 @@ mod tests {
 
     use super::*;
     use crate::mesh::shapes;
-    use crate::report::contact_sheet::RED;
 
     /// The sheet of a box and of what became of it.
     fn sheet(order: ColumnOrder, tests: &[&TriMesh]) -> Picture {

@@ -22,7 +22,8 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 pub use cell::{
-    Cell, LevelErrors, LevelFinding, LookFinding, PicturesFinding, RunFinding, SheetFinding, ViewerFinding,
+    Cell, LevelErrors, LevelFinding, LookFinding, PicturesFinding, RunFinding, SheetFinding, ShownPicture,
+    ViewerFinding,
 };
 pub use gain::{EqualError, Improvement, Levels, PresetPair, QuadricCount};
 pub use report::{ModelReport, ZtReport};
@@ -73,6 +74,8 @@ pub struct ZtRequest {
     pub memory_limit: Option<u64>,
     /// The study's directory.
     pub output: PathBuf,
+    /// Another place for the page, beside `report.html` in the directory.
+    pub page: Option<PathBuf>,
 }
 
 /// A model of the study.
@@ -84,6 +87,8 @@ pub struct ZtModel {
     pub path: PathBuf,
     /// Which of the paper's models it is or stands for.
     pub paper: Option<&'static PaperModel>,
+    /// It is another file than the paper's, whatever its number of triangles says.
+    pub stand_in: bool,
     /// Upward in its pictures, any length but 0.
     pub up: [f64; 3],
 }

@@ -17,6 +17,9 @@ const BLOCK_GAP: u32 = 20;
 /// Width of the difference legend, at most.
 const LEGEND_WIDTH: u32 = 320;
 
+/// Difference in grey levels that is drawn in full red, unless a sheet asks for another.
+pub const FULL_RED: f32 = 64.0;
+
 /// Colour of a difference of [`ContactSheet::full_red`] and more.
 pub const RED: [u8; 3] = [222, 0, 0];
 
@@ -82,7 +85,7 @@ impl Default for ContactSheet<'_> {
             columns: Vec::new(),
             row_captions: Vec::new(),
             background: Background::White,
-            full_red: 64.0,
+            full_red: FULL_RED,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! A picture in memory: pixels, boxes, text, PNG.
 
 mod coarse;
+mod crop;
 
 use std::io::{self, Write};
 

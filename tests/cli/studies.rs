@@ -46,8 +46,7 @@ fn convergence_needs_rays_unless_another_reference_is_named() {
 }
 
 /// Everything that a study of one model leaves, but for its cells.
-const FILES_OF_ONE: [&str; 14] = [
-    "convergence.csv",
+const FILES_OF_ONE: [&str; 13] = [
     "cube-diagram-best.png",
     "cube-errors-best.svg",
     "cube-heat-best.png",
@@ -68,7 +67,7 @@ fn zt_plans_then_writes_tables_pictures_and_a_page() {
     let home = directory();
     let study =
         ["study", "zt", "motor=cube.off", "-o", "zt", "--preset", "best", "--levels", "0.5", "--no-convergence"];
-    let study = [&study[..], &SMALL, &["--samples", "100", "--json"]].concat();
+    let study = [&study[..], &SMALL, &["--samples", "100", "--report", "page.html", "--json"]].concat();
     let plan = json(home.path(), &[&study[..], &["--dry-run"]].concat());
     let cells: Vec<&str> =
         plan["cells"].as_array().unwrap().iter().map(|cell| cell["cell"].as_str().unwrap()).collect();
@@ -83,9 +82,12 @@ fn zt_plans_then_writes_tables_pictures_and_a_page() {
     let mut files = FILES_OF_ONE;
     files.sort_unstable();
     assert_eq!(names(&home.path().join("zt")), files);
-    let done = json(home.path(), &[&study[..], &["--dry-run"]].concat());
+    let done = json(home.path(), &[&study[..], &["--dry-run", "--force"]].concat());
     assert_eq!(done["estimated_seconds"], 0.0);
-    assert!(fs::read_to_string(home.path().join("zt/report.html")).unwrap().contains("Stand-in for Motor"));
+    let page = |file: &str| fs::read_to_string(home.path().join(file)).unwrap();
+    assert!(page("zt/report.html").contains("Stand-in for Motor"));
+    assert!(page("zt/report.html").contains("outsight study zt 'motor=cube.off' --output zt --preset best"));
+    assert_eq!(page("page.html"), page("zt/report.html"));
 }
 
 #[test]
@@ -99,6 +101,14 @@ fn zt_leaves_foreign_directories_alone_and_knows_the_papers_models() {
     assert!(unknown.err.contains("the paper has no model 'engine'; it has bunny"), "{}", unknown.err);
     let alike = run(home.path(), &["study", "zt", "cube.off", "motor=cube.off", "-o", "zt"]);
     assert_eq!(alike.code, 2);
+    let file = run(home.path(), &["study", "zt", "cube.off", "-o", "cube.off"]);
+    assert_eq!(file.code, 4);
+    assert!(file.err.contains("cube.off: is a file"), "{}", file.err);
+    let percent = run(home.path(), &["study", "zt", "cube.off", "-o", "zt", "--levels", "1.5"]);
+    assert_eq!(percent.code, 2);
+    assert!(percent.err.contains("for 1.5 % write 0.015"), "{}", percent.err);
+    let over = run(home.path(), &["study", "zt", "cube.off", "-o", "zt", "--report", "page.htm"]);
+    assert!(over.code == 2 && over.err.contains("ends in .html"), "{}", over.err);
     assert!(!home.path().join("zt").exists());
 }
 
@@ -122,4 +132,6 @@ fn zt_turns_one_model_up_and_keeps_what_was_found_of_the_others() {
     let stranger = run(home.path(), &[&study[..], &["--up", "ball=0,1,0"]].concat());
     assert_eq!(stranger.code, 2);
     assert!(stranger.err.contains("no model is called ball; there is cube, box"), "{}", stranger.err);
+    let stranger = run(home.path(), &[&study[..], &["--stand-in", "ball"]].concat());
+    assert!(stranger.err.contains("--stand-in: no model is called ball"), "{}", stranger.err);
 }

@@ -14,6 +14,7 @@ use crate::cli::console::Console;
 use crate::cli::estimate::{Task, study_seconds};
 use crate::cli::failure::Failure;
 use crate::cli::flags::ReadingFlags;
+use crate::cli::outputs::{self, Kind, Planned};
 use crate::cli::system::peak_mib;
 use crate::cli::text::{duration, table};
 use crate::cli::values;
@@ -34,7 +35,7 @@ pub struct Flags {
     preset: Presets,
     /// Shares of the triangles at which simplifiers are compared, descending, as in 0.2,0.1,0.05 [default: halves, 0.5, 0.25,
     /// … 0.0078125: the paper has seven levels, evenly spread in its figure, and does not say which]
-    #[arg(long, value_name = "R,R,…", value_delimiter = ',', value_parser = values::ratio)]
+    #[arg(long, value_name = "R,R,…", value_delimiter = ',', value_parser = values::share)]
     levels: Vec<f64>,
     /// Samples on each mesh for the geometric error
     #[arg(long, value_name = "N", default_value_t = 200_000, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
@@ -55,6 +56,13 @@ pub struct Flags {
     /// [default: 0,0,1]
     #[arg(long, value_name = "[NAME=]X,Y,Z", value_parser = values::direction_of)]
     up: Vec<(Option<String>, [f64; 3])>,
+    /// The model of this name is another file than the paper's, though its number of triangles is the same; may be given
+    /// several times
+    #[arg(long, value_name = "NAME")]
+    stand_in: Vec<String>,
+    /// Write the page to this place too: .html, one file that loads nothing
+    #[arg(long = "report", value_name = "FILE")]
+    page: Option<PathBuf>,
 }
 
 /// Upward where nobody says otherwise.
@@ -105,19 +113,17 @@ impl Flags {
             convergence: !self.no_convergence,
             memory_limit: console.global.memory_limit,
             output: self.output.clone(),
+            page: self.page.clone(),
         })
     }
 
     /// The models, each the way up that was said of it, or else of all.
     fn studied(&self) -> Result<Vec<ZtModel>> {
         let mut models = self.models.iter().map(model).collect::<Result<Vec<_>>>()?;
-        let of_one = self.up.iter().filter_map(|(name, _)| name.as_ref());
-        if let Some(stranger) = of_one.into_iter().find(|name| models.iter().all(|model| &model.name != *name)) {
-            let names: Vec<&str> = models.iter().map(|model| model.name.as_str()).collect();
-            let message = format!("no model is called {stranger}; there is {}", names.join(", "));
-            return Err(Error::Option { name: "--up", message });
-        }
+        check_names("--up", self.up.iter().filter_map(|(name, _)| name.as_ref()), &models)?;
+        check_names("--stand-in", self.stand_in.iter(), &models)?;
         for model in &mut models {
+            model.stand_in = self.stand_in.contains(&model.name);
             let said = |wanted: Option<&String>| self.up.iter().rfind(|(name, _)| name.as_ref() == wanted);
             if let Some((_, up)) = said(Some(&model.name)).or_else(|| said(None)) {
                 model.up = *up;
@@ -125,6 +131,16 @@ impl Flags {
         }
         Ok(models)
     }
+}
+
+/// Whatever is said of one model is said of one that is there.
+fn check_names<'a>(flag: &'static str, names: impl IntoIterator<Item = &'a String>, models: &[ZtModel]) -> Result<()> {
+    let Some(stranger) = names.into_iter().find(|name| models.iter().all(|model| &model.name != *name)) else {
+        return Ok(());
+    };
+    let names: Vec<&str> = models.iter().map(|model| model.name.as_str()).collect();
+    let message = format!("no model is called {stranger}; there is {}", names.join(", "));
+    Err(Error::Option { name: flag, message })
 }
 
 /// A model as it was named, called by its file's name without what follows the first dot.
@@ -136,13 +152,17 @@ fn model(argument: &OsString) -> Result<ZtModel> {
         let message = format!("{} has no name that files could be named after", named.file.display());
         return Err(Error::Option { name: "MODELS", message });
     }
-    Ok(ZtModel { name, path: named.file, paper: named.model, up: UP })
+    Ok(ZtModel { name, path: named.file, paper: named.model, stand_in: false, up: UP })
 }
 
 /// Studies the models, or says what that would take.
 pub fn run(flags: &Flags, console: &Console) -> std::result::Result<(), Failure> {
     let request = flags.request(console)?;
     check_directory(&request.output, console.global.force)?;
+    if let Some(path) = &request.page {
+        let inputs: Vec<&Path> = request.models.iter().map(|model| model.path.as_path()).collect();
+        outputs::check(Planned { path, kind: Kind::Page, format: None }, &inputs, console.global.force)?;
+    }
     if flags.dry_run {
         return dry_run(&request, console);
     }
@@ -150,8 +170,8 @@ pub fn run(flags: &Flags, console: &Console) -> std::result::Result<(), Failure>
     let report = study_zt(&request, &Watch::new(console, task).deleting_knowingly(true))?;
     let object = Object { options: options(&request), report: &report, peak_mb: peak_mib() };
     let json = console.to_json(&object)?;
-    report.write(&request, &json)?;
-    console.result(&object, &text(&report, &request.output), true)
+    report.write(&request, &json, std::slice::from_ref(&console.command_line))?;
+    console.result(&object, &text(&report, &request), true)
 }
 
 /// The options in force.
@@ -169,6 +189,10 @@ fn options(request: &ZtRequest) -> serde_json::Value {
 
 /// A study's files are replaced by its next run; a directory with anything else in it is not touched.
 fn check_directory(directory: &Path, force: bool) -> Result<()> {
+    if directory.exists() && !directory.is_dir() {
+        let message = "is a file; a study writes many files into a directory: give the name of one".to_owned();
+        return Err(Error::Write { path: directory.to_owned(), message });
+    }
     let Ok(mut entries) = fs::read_dir(directory) else { return Ok(()) };
     let ours = directory.join("cells").is_dir();
     if ours || force || entries.next().is_none() {
@@ -197,21 +221,21 @@ fn dry_run(request: &ZtRequest, console: &Console) -> std::result::Result<(), Fa
     console.result(&Plan { cells, estimated_seconds }, &text, true)
 }
 
-fn text(report: &ZtReport, directory: &Path) -> String {
+fn text(report: &ZtReport, request: &ZtRequest) -> String {
     let stands = report.models.iter().filter(|model| model.stand.model().is_some());
     let stands: String = stands.map(|m| format!("{}: {}\n", m.findings.name, m.stand_in_words)).collect();
     let left_out = report.left_out_in_words().map(|words| format!("{words}\n"));
-    let [page, tables] = ["report.html", "tables.md"].map(|file| directory.join(file));
+    let [page, tables] = ["report.html", "tables.md"].map(|file| request.output.join(file));
+    let written = request.page.iter().chain([&page, &tables]).map(|path| path.display().to_string());
     format!(
         "Visibility (table 1), in brackets what the paper prints\n{}\n\
          Image error of VG against QB (table 2)\n{}\n\
          Image error of VG against QB, mean over the models, in brackets how many, and rank correlation with V(M)\n{}\n\
-         {stands}{}written  {}, {}\n",
+         {stands}{}written  {}\n",
         report.table1(),
         report.table2(),
         report.gains_table(),
         left_out.unwrap_or_default(),
-        page.display(),
-        tables.display(),
+        written.collect::<Vec<_>>().join(", "),
     )
 }

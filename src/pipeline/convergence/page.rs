@@ -54,7 +54,11 @@ impl ConvergenceReport {
             Ok(Figure { image: Image::Svg(svg), caption })
         };
         let figures = panels.into_iter().map(figure).collect::<Result<Vec<_>>>()?;
-        Ok(section("Error by the number of cameras", PLOTS, Content::Figures(Figures { columns: 2, figures })))
+        Ok(section(
+            "Error by the number of cameras",
+            PLOTS,
+            Content::Figures(Figures { columns: 2, figures, legend: None }),
+        ))
     }
 
     fn notes(&self) -> Vec<String> {

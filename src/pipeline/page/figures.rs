@@ -8,21 +8,15 @@ use crate::pipeline::compare::{VIEW_NAMES, views_around};
 use crate::pipeline::page::{Exhibit, MAP, section};
 use crate::pipeline::render::heat_picture;
 use crate::pipeline::side_by_side::Pictures;
-use crate::raster::GreyImage;
-use crate::report::colour::mix;
-use crate::report::contact_sheet::RED;
 use crate::report::histogram::Histogram;
 use crate::report::page::{Content, FIGURES_BYTES, Figure, Figures, Image, Section};
-use crate::report::picture::{Picture, WHITE};
+use crate::report::picture::Picture;
 
 /// Bars of a histogram.
 const CLASSES: usize = 20;
 
 /// Histograms side by side at most.
 const HISTOGRAM_COLUMNS: usize = 3;
-
-/// Difference in grey levels that is drawn in full red, as on the contact sheet.
-const FULL_RED: f32 = 64.0;
 
 /// Pixels along the side of a picture: the first that keeps all of them within [`FIGURES_BYTES`].
 const WIDTHS: [u32; 5] = [420, 300, 210, 150, 100];
@@ -48,7 +42,7 @@ pub(super) fn histograms(exhibits: &[&Exhibit<'_>]) -> Result<Figures> {
         Ok(Figure { image: Image::Svg(svg), caption: exhibit.name.clone() })
     };
     let figures = exhibits.iter().zip(spread).map(figure).collect::<Result<Vec<_>>>()?;
-    Ok(Figures { columns: figures.len().clamp(2, HISTOGRAM_COLUMNS), figures })
+    Ok(Figures { columns: figures.len().clamp(2, HISTOGRAM_COLUMNS), figures, legend: None })
 }
 
 /// The share of the surface in each class of visibility, in %.
@@ -74,7 +68,7 @@ pub(super) fn pictures(original: &Exhibit<'_>, results: &[Exhibit<'_>], up: DVec
     let columns = [VIEW_NAMES.len(), 2 * VIEW_NAMES.len()];
     let rows = headings.into_iter().zip(columns).zip(drawn);
     let rows = rows.map(|(((heading, text), columns), figures)| {
-        section(heading, text, Content::Figures(Figures { columns, figures }))
+        section(heading, text, Content::Figures(Figures { columns, figures, legend: None }))
     });
     Ok(rows.collect())
 }
@@ -91,28 +85,18 @@ fn heat(exhibit: &Exhibit<'_>, shots: &[Shot; 3]) -> Result<Vec<Figure>> {
 /// The pictures of the original, and those of all results.
 fn compared(original: &Exhibit<'_>, results: &[Exhibit<'_>], shots: &[Shot; 3]) -> Result<Vec<Vec<Figure>>> {
     let reference = Pictures::of(original.mesh, original.mesh, shots)?;
-    let whole = reference.white.iter().zip(VIEW_NAMES);
-    let whole = whole.map(|(image, side)| figure(&grey(image)?, format!("{} {side}", original.name)));
+    let whole = VIEW_NAMES.iter().enumerate();
+    let whole = whole.map(|(view, side)| figure(&reference.shaded(view)?, format!("{} {side}", original.name)));
     let mut figures = vec![whole.collect::<Result<Vec<_>>>()?, Vec::new()];
     for result in results {
         let sheet = Pictures::of(result.mesh, original.mesh, shots)?;
         for (view, side) in VIEW_NAMES.into_iter().enumerate() {
-            let red = difference(&reference.black[view], &sheet.black[view])?;
-            figures[1].push(figure(&grey(&sheet.white[view])?, format!("{} {side}", result.name))?);
-            figures[1].push(figure(&red, format!("{}: difference {side}", result.name))?);
+            figures[1].push(figure(&sheet.shaded(view)?, format!("{} {side}", result.name))?);
+            let caption = format!("{}: difference {side}", result.name);
+            figures[1].push(figure(&reference.red(&sheet, view)?, caption)?);
         }
     }
     Ok(figures)
-}
-
-fn grey(image: &GreyImage) -> Result<Picture> {
-    Picture::from_grey(image.width as u32, image.width as u32, &image.pixels)
-}
-
-fn difference(a: &GreyImage, b: &GreyImage) -> Result<Picture> {
-    let differences: Vec<f32> = a.pixels.iter().zip(&b.pixels).map(|(a, b)| (a - b).abs()).collect();
-    let red = |level: f32| mix(WHITE, RED, f64::from((level / FULL_RED).min(1.0)));
-    Picture::from_values(a.width as u32, a.width as u32, &differences, red)
 }
 
 fn figure(picture: &Picture, caption: String) -> Result<Figure> {

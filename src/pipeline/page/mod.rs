@@ -188,7 +188,7 @@ impl Show<'_> {
     fn viewer(&self, up: DVec3, progress: &dyn Progress) -> Result<Section> {
         let models = models(&self.exhibits(), MODELS_BYTES, progress)?;
         let [toward, ..] = views_around(up).map(|d| d.to_array());
-        let viewer = Viewer { models, legend: Some(legend()), toward, up: up.to_array() };
+        let viewer = Viewer { models, legend: Some(legend(MAP)), toward, up: up.to_array() };
         Ok(section("In three dimensions", VIEWER, Content::Viewer(viewer)))
     }
 
@@ -221,11 +221,11 @@ const HISTOGRAM: &str = "Share of the surface by its visibility. The first bar i
 const ERRORS: &str = "Image error: root mean square difference of pictures from 20 sides, in grey levels of 255. Outline error: \
     pixels per picture, of 512 by 512, that only one of the two outlines covers.";
 
-/// What the colours of every page mean.
-pub(super) fn legend() -> Legend {
+/// What the colours of `map` mean.
+pub(super) fn legend(map: ColourMap) -> Legend {
     Legend {
         title: "Visibility V".to_owned(),
-        map: MAP,
+        map,
         low: "no camera sees it".to_owned(),
         high: "all of it sees open sky".to_owned(),
     }

@@ -87,6 +87,6 @@ fn error_over_triangles(meshes: &[&TriMesh], errors: &[ImageError], metric: Metr
     };
     let svg = plot.to_svg().map_err(|e| Error::Limit { message: format!("the plot of errors: {e}") })?;
     let caption = "Image error (left axis) and outline error (right axis) of each level.".to_owned();
-    let figures = Figures { columns: 1, figures: vec![Figure { image: Image::Svg(svg), caption }] };
+    let figures = Figures { columns: 1, figures: vec![Figure { image: Image::Svg(svg), caption }], legend: None };
     Ok(Some(section("Error over triangles", "", Content::Figures(figures))))
 }

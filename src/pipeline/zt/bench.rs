@@ -6,7 +6,8 @@ use std::path::PathBuf;
 use glam::DVec3;
 
 use super::cell::{
-    Cell, LevelErrors, LevelFinding, LookFinding, PicturesFinding, RunFinding, SheetFinding, ViewerFinding,
+    Cell, LevelErrors, LevelFinding, LookFinding, PicturesFinding, RunFinding, SheetFinding, ShownPicture,
+    ViewerFinding,
 };
 use super::store::Store;
 use super::{ZtModel, ZtRequest};
@@ -21,6 +22,7 @@ use crate::pipeline::diagram::Record;
 use crate::pipeline::observation::{Observation, Surrounded};
 use crate::pipeline::page::{Exhibit, models};
 use crate::pipeline::render::heat_picture;
+use crate::pipeline::side_by_side::Captioned;
 use crate::pipeline::{
     Clock, ColumnOrder, ConvergenceRequest, IndependentReference, MeshConvergence, Metric, Observer, Portrait, Preset,
     Reduction, SideBySide, VISIBILITY_POWER, simplify_seen,
@@ -83,7 +85,10 @@ impl<'a> Bench<'a> {
         let seconds = clock.lap();
         observation.keep(&visibility, None)?;
         let [heat_map, diagram] = ["heat", "diagram"].map(|what| self.file_name(what, preset, "png"));
-        self.save(&heat_map, &self.heat_map(&visibility)?)?;
+        let bare_heat_map = self.file_for_page(&format!("heat-{}", preset.name()));
+        let picture = self.heat_map(&visibility)?;
+        self.save(&heat_map, &with_legend(&picture, ColourMap::default(), "visibility V"))?;
+        self.save(&bare_heat_map, &picture.drawn_area().map_or(picture.clone(), |area| picture.cropped(area)))?;
         record.write(&self.loaded, observation.subject()?, &self.path(&diagram), true)?;
         Ok(LookFinding {
             preset,
@@ -94,6 +99,7 @@ impl<'a> Bench<'a> {
             never_seen: visibility.never_seen(),
             seconds,
             heat_map,
+            bare_heat_map,
             diagram,
         })
     }
@@ -148,14 +154,13 @@ impl<'a> Bench<'a> {
     pub fn pictures(&self, preset: Preset, runs: &[&RunFinding]) -> Result<PicturesFinding> {
         let counts = self.model.picture_counts(self.triangles()).into_iter();
         let sheets = counts.map(|triangles| {
-            let file = format!("{}-{}-{triangles}.png", self.model.name, Cell::Pictures(preset).name());
-            self.save(&file, &self.sheet(triangles, runs)?)?;
-            Ok(SheetFinding { triangles, file })
+            let name = format!("{}-{triangles}", Cell::Pictures(preset).name());
+            self.sheet(&name, triangles, runs)
         });
         Ok(PicturesFinding { preset, sheets: sheets.collect::<Result<_>>()? })
     }
 
-    fn sheet(&self, triangles: usize, runs: &[&RunFinding]) -> Result<Picture> {
+    fn sheet(&self, name: &str, triangles: usize, runs: &[&RunFinding]) -> Result<SheetFinding> {
         let mut made = Vec::new();
         for run in runs {
             let level = run.level_of(triangles).and_then(|level| level.mesh.as_ref().map(|file| (level, file)));
@@ -177,7 +182,16 @@ impl<'a> Bench<'a> {
             order: ColumnOrder::ReferenceBetween,
             up: DVec3::from_array(self.model.up),
         };
-        sheet.draw()
+        let taken = sheet.take()?;
+        let file = format!("{}-{name}.png", self.model.name);
+        self.save(&file, &taken.sheet()?)?;
+        let mut shown = Vec::new();
+        for (number, Captioned { caption, picture }) in taken.first_view()?.into_iter().enumerate() {
+            let file = self.file_for_page(&format!("{name}-{number}"));
+            self.save(&file, &picture)?;
+            shown.push(ShownPicture { caption, file });
+        }
+        Ok(SheetFinding { triangles, file, shown })
     }
 
     /// The original and what VG made of it, coloured by their visibility, within their share of a page.
@@ -217,6 +231,11 @@ impl<'a> Bench<'a> {
         format!("{}-{what}-{}.{extension}", self.model.name, preset.name())
     }
 
+    /// `cells/bunny/heat-best.png`: a picture that the page shows; readers of the directory have a whole one.
+    fn file_for_page(&self, what: &str) -> String {
+        format!("{}/{what}.png", self.store.cells_name())
+    }
+
     /// Writes the mesh that a simplifier made of the model; returns its name.
     fn save_mesh(&self, mesh: &TriMesh, cell: Cell, asked: usize) -> Result<String> {
         let file = format!("{}-{}-{asked}.ply", self.model.name, cell.name());
@@ -227,13 +246,8 @@ impl<'a> Bench<'a> {
     fn heat_map(&self, visibility: &Visibility) -> Result<Picture> {
         let up = DVec3::from_array(self.model.up);
         let shot = Shot::fitting(self.mesh(), views_around(up)[0], up.normalize(), HEAT_MAP);
-        let picture = heat_picture(
-            &Gallery::new(self.mesh(), self.mesh()),
-            &shot,
-            visibility.per_triangle(),
-            ColourMap::default(),
-        )?;
-        Ok(with_legend(&picture, ColourMap::default(), "visibility V"))
+        let gallery = Gallery::new(self.mesh(), self.mesh());
+        heat_picture(&gallery, &shot, visibility.per_triangle(), ColourMap::default())
     }
 
     fn path(&self, file: &str) -> PathBuf {

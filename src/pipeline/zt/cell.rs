@@ -75,6 +75,8 @@ pub struct LookFinding {
     pub seconds: f64,
     /// The heat map (Fig. 2), PNG.
     pub heat_map: String,
+    /// The same without legend and margins, for the page.
+    pub bare_heat_map: String,
     /// The visibility diagram (Fig. 1), PNG.
     pub diagram: String,
 }
@@ -189,13 +191,24 @@ pub struct PicturesFinding {
 pub struct SheetFinding {
     /// Triangles asked for.
     pub triangles: usize,
-    /// The picture, PNG.
+    /// All views, PNG.
+    pub file: String,
+    /// The first view, for the page: the original, then each simplifier's result and what differs.
+    pub shown: Vec<ShownPicture>,
+}
+
+/// A picture of the page.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ShownPicture {
+    /// What it shows.
+    pub caption: String,
+    /// The picture, PNG, without words and margins.
     pub file: String,
 }
 
 impl Finding for LookFinding {
     fn files(&self) -> Vec<&str> {
-        vec![&self.heat_map, &self.diagram]
+        vec![&self.heat_map, &self.bare_heat_map, &self.diagram]
     }
 }
 
@@ -207,7 +220,9 @@ impl Finding for RunFinding {
 
 impl Finding for PicturesFinding {
     fn files(&self) -> Vec<&str> {
-        self.sheets.iter().map(|sheet| sheet.file.as_str()).collect()
+        let whole = self.sheets.iter().map(|sheet| &sheet.file);
+        let shown = self.sheets.iter().flat_map(|sheet| &sheet.shown).map(|shown| &shown.file);
+        whole.chain(shown).map(String::as_str).collect()
     }
 }
 

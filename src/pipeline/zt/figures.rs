@@ -1,83 +1,130 @@
-//! The pictures of a study on its page, each as large as its share of the page allows.
+//! The pictures of a study on its page: whole where they fit, else all smaller by the same share.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::io;
-use std::path::Path;
 
+use super::ZtRequest;
+use super::cell::LookFinding;
 use super::plots::Plot;
 use super::report::ZtReport;
 use crate::error::{Error, Result};
 use crate::report::page::{FIGURES_BYTES, Figure, Image, MODELS_BYTES};
 use crate::report::picture::Picture;
 
-/// What a picture takes of a page.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Part {
-    /// A sheet of pictures side by side.
-    Sheet = 8,
-    /// A heat map.
-    HeatMap = 4,
-    /// A visibility diagram.
-    Diagram = 5,
+/// Figure 1 of an outline, in the study's directory.
+pub(super) const OUTLINE: &str = "outline.png";
+
+/// What a picture is on the page.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Part {
+    /// One of five pictures side by side.
+    Side,
+    /// One of two heat maps.
+    HeatMap,
+    /// A visibility diagram of a mesh.
+    Diagram,
+    /// A visibility diagram of an outline, with words in it.
+    Outline,
 }
 
-/// Bytes for the pictures of a page.
-#[derive(Debug, Clone, Copy)]
+/// Pictures of a page, by their files' names.
 pub(super) struct Room {
-    /// Of a part of 1.
-    unit: usize,
+    images: BTreeMap<String, Image>,
 }
 
-/// Pixels that the widest column of a page shows.
-const WIDEST: u32 = 1184;
-/// A picture is made no narrower than this, and a strip no lower, however little room there is.
-const NARROWEST: u32 = 160;
-const LOWEST: u32 = 48;
-/// Aims a little below the share, so that it is met at once.
-const CAUTION: f64 = 0.9;
+/// A picture from the study's directory.
+struct Source {
+    name: String,
+    part: Part,
+    bytes: Vec<u8>,
+}
+
+/// Aims a little below what is free, so that it is met at once.
+const CAUTION: f64 = 0.95;
+/// Pictures are made no smaller than this; what is too much then is left to the limit of the whole page.
+const SMALLEST: f64 = 0.2;
+
+impl Part {
+    /// Pixels that a picture has at most where they are made smaller; a wide page shows about as many.
+    fn most(self, picture: &Picture) -> [f64; 2] {
+        let widest: f64 = match self {
+            Self::Side => 320.0,
+            Self::HeatMap => 560.0,
+            // Half of its cameras. Its columns are as many as the triangles and mean little one by one.
+            Self::Diagram => return [640.0, 130.0],
+            Self::Outline => 1184.0,
+        };
+        let [width, height] = [picture.width(), picture.height()].map(f64::from);
+        let shrink = (widest / width.max(height)).min(1.0);
+        [shrink * width, shrink * height]
+    }
+}
 
 impl Room {
-    /// What plots and models leave, in equal shares.
-    pub fn of(report: &ZtReport, plots: &[Plot]) -> Self {
+    /// All pictures of `report` within what plots and models leave of a page.
+    pub fn of(report: &ZtReport, request: &ZtRequest, plots: &[Plot]) -> Result<Self> {
         let viewers = report.models.iter().flat_map(|model| &model.findings.viewer);
         let models: usize = viewers.flat_map(|viewer| &viewer.models).map(|model| model.model.bytes()).sum();
         let plots: usize = plots.iter().map(|plot| plot.figure().image.embedded_bytes()).sum();
         let free = (FIGURES_BYTES + MODELS_BYTES).saturating_sub(models + plots);
-        let parts = report.models.iter().map(|model| {
-            let sheets: usize = model.findings.pictures.iter().map(|pictures| pictures.sheets.len()).sum();
-            Part::Sheet as usize * sheets + Part::HeatMap as usize * model.findings.looks.len() + Part::Diagram as usize
-        });
-        Self { unit: free / (parts.sum::<usize>() + Part::Diagram as usize) }
+        let sources = sources(report, request)?;
+        let as_is = sources.iter().map(|source| Image::Png(source.bytes.clone())).collect();
+        let images = fitted(&sources, as_is, free)?;
+        Ok(Self { images: sources.into_iter().map(|source| source.name).zip(images).collect() })
     }
 
-    /// A picture of the study as a figure.
-    pub fn figure(self, part: Part, path: &Path, caption: String) -> Result<Figure> {
-        let bytes = fs::read(path).map_err(|source| Error::Read { path: path.to_owned(), source })?;
-        let image =
-            fitted(bytes, self.unit * part as usize).map_err(|source| Error::Read { path: path.to_owned(), source })?;
+    /// A picture as a figure.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] for a file that the report did not name.
+    pub fn figure(&self, file: &str, caption: String) -> Result<Figure> {
+        let image = self.images.get(file).cloned();
+        let image = image.ok_or_else(|| Error::Limit { message: format!("no room was kept for {file}") })?;
         Ok(Figure { image, caption })
     }
 }
 
-/// A picture as it is, or coarser and smaller, until it takes no more than `share` bytes.
-fn fitted(file: Vec<u8>, share: usize) -> io::Result<Image> {
-    let as_is = Image::Png(file);
-    let Image::Png(file) = &as_is else { return Ok(as_is) };
-    if as_is.embedded_bytes() <= share {
-        return Ok(as_is);
+/// The pictures that the page shows.
+fn sources(report: &ZtReport, request: &ZtRequest) -> Result<Vec<Source>> {
+    let mut names = vec![(OUTLINE, Part::Outline)];
+    for findings in report.models.iter().map(|model| &model.findings) {
+        names.extend(findings.looks.iter().map(|look| (look.bare_heat_map.as_str(), Part::HeatMap)));
+        names.extend(findings.looks.first().map(|look: &LookFinding| (look.diagram.as_str(), Part::Diagram)));
+        let sheets = findings.pictures.iter().flat_map(|pictures| &pictures.sheets);
+        names.extend(sheets.flat_map(|sheet| &sheet.shown).map(|shown| (shown.file.as_str(), Part::Side)));
     }
-    let whole = Picture::from_png(file).map_err(io::Error::other)?;
-    let mut width = whole.width().min(WIDEST);
+    let read = |(name, part): (&str, Part)| {
+        let path = request.output.join(name);
+        let bytes = fs::read(&path).map_err(|source| Error::Read { path, source })?;
+        Ok(Source { name: name.to_owned(), part, bytes })
+    };
+    names.into_iter().map(read).collect()
+}
+
+/// `images`, which show the sources, or coarser and smaller ones, until all together take no more than `free` bytes.
+fn fitted(sources: &[Source], mut images: Vec<Image>, free: usize) -> Result<Vec<Image>> {
+    let mut scale = 1.0;
     loop {
-        let height = (whole.height() * width / whole.width()).max(whole.height().min(LOWEST));
-        let mut smaller = Vec::new();
-        whole.scaled_down(width, height).write_coarse_png(&mut smaller)?;
-        let image = Image::Png(smaller);
-        if image.embedded_bytes() <= share || width <= NARROWEST {
-            return Ok(image);
+        let taken: usize = images.iter().map(Image::embedded_bytes).sum();
+        if taken <= free || scale < SMALLEST {
+            return Ok(images);
         }
+        let smaller = |source: &Source| {
+            let fault = |e: io::Error| Error::Limit { message: format!("{} for the page: {e}", source.name) };
+            smaller(&Picture::from_png(&source.bytes)?, source.part, scale).map_err(fault)
+        };
+        images = sources.iter().map(smaller).collect::<Result<_>>()?;
+        let taken: usize = images.iter().map(Image::embedded_bytes).sum();
         // Bytes go with the pixels.
-        let shrink = libm::sqrt(CAUTION * share as f64 / image.embedded_bytes() as f64);
-        width = ((shrink * f64::from(width)) as u32).max(NARROWEST);
+        scale *= libm::sqrt(CAUTION * free as f64 / taken as f64).min(CAUTION);
     }
+}
+
+/// A picture in coarser shades, at a share of its size on the page.
+fn smaller(picture: &Picture, part: Part, scale: f64) -> io::Result<Image> {
+    let [width, height] = part.most(picture).map(|pixels| (scale * pixels) as u32);
+    let mut file = Vec::new();
+    picture.scaled_down(width, height).write_coarse_png(&mut file)?;
+    Ok(Image::Png(file))
 }

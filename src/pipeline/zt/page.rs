@@ -2,7 +2,7 @@
 
 use super::ZtRequest;
 use super::cell::{LookFinding, SheetFinding};
-use super::figures::{Part, Room};
+use super::figures::{self, Room};
 use super::gain::Levels;
 use super::plots::Plot;
 use super::report::{ModelReport, ZtReport};
@@ -11,17 +11,21 @@ use super::words::{self, short};
 use crate::error::Result;
 use crate::pipeline::Metric;
 use crate::pipeline::compare::views_around;
-use crate::pipeline::page::{legend, section};
+use crate::pipeline::page::{MAP, how_made, legend, section};
+use crate::report::colour::ColourMap;
 use crate::report::page::{Content, Fact, Figure, Figures, Image, Page, Section, Table, Viewer};
+use crate::report::paper::PaperModel;
 use crate::report::table;
 
 const OUTLINE: &str = "Cameras stand all around an outline. Columns of the diagram are points along the boundary, rows are \
     cameras; green where the camera sees the point.";
+const DIFFERENCES: &str = "Differences are white where the pictures are equal, full red from 64 grey levels of 255. From more \
+    sides:";
 
 impl ZtReport {
-    /// The page; pictures that it shows are read from the study's directory.
-    pub(super) fn page(&self, request: &ZtRequest, plots: &[Plot]) -> Result<Page> {
-        let room = Room::of(self, plots);
+    /// The page; pictures that it shows are read from the study's directory. `commands` is what was typed to make it.
+    pub(super) fn page(&self, request: &ZtRequest, plots: &[Plot], commands: &[String]) -> Result<Page> {
+        let room = Room::of(self, request, plots)?;
         let mut sections = vec![section("Summary", &self.summary_in_words(), Content::Summary(self.facts()))];
         let correlation: Vec<Figure> = plots.iter().filter(|plot| plot.model.is_none()).map(Plot::figure).collect();
         if !correlation.is_empty() {
@@ -32,13 +36,13 @@ impl ZtReport {
             section("Table 2: less image error", words::TABLE2, Content::Table(cells(&self.table2()))),
             section("Who gains", words::GAINS, Content::Table(cells(&self.gains_table()))),
         ]);
-        let outline = request.output.join("outline.png");
-        let outline = room.figure(Part::Diagram, &outline, "visibility diagram of an outline".to_owned())?;
+        let outline = room.figure(figures::OUTLINE, "visibility diagram of an outline".to_owned())?;
         sections.push(figures("Figure 1: a visibility diagram", OUTLINE, 1, vec![outline]));
         for model in &self.models {
-            sections.extend(model.sections(request, plots, room)?);
+            sections.extend(model.sections(plots, &room)?);
         }
         sections.push(section("How to read this", "", Content::Notes(self.notes(request))));
+        sections.extend(how_made(commands));
         Ok(Page {
             title: "Visibility-guided simplification".to_owned(),
             subtitle: words::SUBTITLE.to_owned(),
@@ -55,17 +59,14 @@ impl ZtReport {
 }
 
 impl ModelReport {
-    fn sections(&self, request: &ZtRequest, plots: &[Plot], room: Room) -> Result<Vec<Section>> {
+    fn sections(&self, plots: &[Plot], room: &Room) -> Result<Vec<Section>> {
         let name = &self.findings.name;
-        let file = |file: &str| request.output.join(file);
-        let heat_map = |look: &LookFinding| {
-            let caption = format!("Visibility (Fig. 2), preset {}: V(M) = {:.3}", look.preset.name(), look.visibility);
-            room.figure(Part::HeatMap, &file(&look.heat_map), caption)
-        };
+        let heat_map = |look: &LookFinding| room.figure(&look.bare_heat_map, self.heat_map_caption(look));
         let heat_maps = self.findings.looks.iter().map(heat_map).collect::<Result<_>>()?;
-        let mut sections = vec![figures(name, &self.remarks(), 2, heat_maps)];
+        let heat_maps = Figures { columns: 2, figures: heat_maps, legend: Some(legend(ColourMap::Paper)) };
+        let mut sections = vec![section(name, &self.remarks(), Content::Figures(heat_maps))];
         if let Some(look) = self.findings.looks.first() {
-            let diagram = room.figure(Part::Diagram, &file(&look.diagram), diagram_caption(look))?;
+            let diagram = room.figure(&look.diagram, diagram_caption(look))?;
             sections.push(figures(&format!("{name}: visibility diagram"), "", 1, vec![diagram]));
         }
         let levels = Content::Table(cells(&self.level_table()));
@@ -76,19 +77,22 @@ impl ModelReport {
         for pictures in &self.findings.pictures {
             for sheet in &pictures.sheets {
                 let preset = pictures.preset.name();
-                let triangles = table::thousands(sheet.triangles as u64);
-                let caption = format!(
-                    "{triangles} triangles, QB and VG with the options of preset {preset}: difference of QB, QB, original, VG, \
-                     difference of VG"
-                );
                 let heading = format!("{name}, side by side, preset {preset}{}", self.figure_of(sheet));
-                let sheet = room.figure(Part::Sheet, &file(&sheet.file), caption)?;
-                sections.push(figures(&heading, "", 1, vec![sheet]));
+                let shown = sheet.shown.iter().map(|shown| room.figure(&shown.file, shown.caption.clone()));
+                let shown = shown.collect::<Result<Vec<_>>>()?;
+                sections.push(figures(&heading, &format!("{DIFFERENCES} {}.", sheet.file), shown.len(), shown));
             }
         }
         sections.extend(self.viewer());
         sections.iter_mut().skip(1).for_each(|part| part.within = true);
         Ok(sections)
+    }
+
+    /// With what the paper prints.
+    fn heat_map_caption(&self, look: &LookFinding) -> String {
+        let printed = self.stand.model().and_then(PaperModel::visibility);
+        let printed = printed.map(|v| format!("; the paper prints {v:.3}")).unwrap_or_default();
+        format!("Visibility (Fig. 2), preset {}: V(M) = {:.3}{printed}", look.preset.name(), look.visibility)
     }
 
     /// ` (Fig. 5)`: which of the paper's figures shows its model at this count.
@@ -101,7 +105,7 @@ impl ModelReport {
     fn viewer(&self) -> Option<Section> {
         let models = self.findings.viewer.as_ref().map(|viewer| viewer.models.clone()).filter(|m| !m.is_empty())?;
         let [toward, ..] = views_around(glam::DVec3::from_array(self.findings.up)).map(|d| d.to_array());
-        let viewer = Viewer { models, legend: Some(legend()), toward, up: self.findings.up };
+        let viewer = Viewer { models, legend: Some(legend(MAP)), toward, up: self.findings.up };
         Some(section(&format!("{}, in three dimensions", self.findings.name), "", Content::Viewer(viewer)))
     }
 
@@ -147,7 +151,7 @@ impl Plot {
 }
 
 fn figures(heading: &str, text: &str, columns: usize, figures: Vec<Figure>) -> Section {
-    section(heading, text, Content::Figures(Figures { columns, figures }))
+    section(heading, text, Content::Figures(Figures { columns, figures, legend: None }))
 }
 
 fn cells(table: &table::Table) -> Table {

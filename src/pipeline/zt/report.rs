@@ -63,7 +63,10 @@ fn leave_viewers_to_the_least_visible(models: &mut [ModelReport]) {
 
 impl ModelReport {
     fn of(model: &ZtModel, findings: ModelFindings) -> Self {
-        let stand = Stand::of(model.paper, findings.triangles);
+        let stand = match Stand::of(model.paper, findings.triangles) {
+            Stand::Original(paper) if model.stand_in => Stand::StandIn(paper),
+            stand => stand,
+        };
         let stand_in_words = stand.sentence(findings.triangles);
         let mut report = Self { stand, stand_in_words, improvements: Vec::new(), findings };
         let improvement = |&(visibility, quadric): &PresetPair| {

@@ -51,6 +51,11 @@ impl<'a> Store<'a> {
         &self.cells
     }
 
+    /// The same as a name in the study's directory.
+    pub fn cells_name(&self) -> String {
+        format!("{CELLS}/{}", self.model.name)
+    }
+
     /// Whether an earlier run found it.
     pub fn has(&self, cell: Cell) -> Result<bool> {
         Ok(match cell {

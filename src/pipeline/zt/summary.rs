@@ -7,6 +7,10 @@ use super::report::ModelReport;
 use crate::pipeline::Preset;
 use crate::report::rank::spearman;
 
+/// Fewest models whose rank correlation is told: three are in perfect order, one way or the other, by chance in one case of
+/// three, five in one of sixty.
+const FEWEST_RANKED: usize = 5;
+
 /// V(M) that parts models which hide much from those which hide little.
 pub(super) const HALF: f64 = 0.5;
 
@@ -43,7 +47,7 @@ pub struct MeanImprovement {
 pub struct Correlation {
     /// V as these options count it.
     pub preset: Preset,
-    /// -1 to 1; negative where less visible models gain more. `None` for fewer than 3 models.
+    /// -1 to 1; negative where less visible models gain more. `None` for fewer than 5 models, which say nothing.
     pub rank_correlation: Option<f64>,
     /// Models.
     pub models: usize,
@@ -91,7 +95,7 @@ impl Correlation {
     fn of(preset: Preset, models: &[ModelReport], gain: impl Fn(&ModelReport) -> Option<f64>) -> Option<Self> {
         let known = |model: &ModelReport| Some((model.visibility(preset)?, gain(model)?));
         let (visibility, gains): (Vec<f64>, Vec<f64>) = models.iter().filter_map(known).unzip();
-        let rank_correlation = spearman(&visibility, &gains);
+        let rank_correlation = spearman(&visibility, &gains).filter(|_| gains.len() >= FEWEST_RANKED);
         (!gains.is_empty()).then_some(Self { preset, rank_correlation, models: gains.len() })
     }
 }

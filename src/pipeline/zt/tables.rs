@@ -35,17 +35,17 @@ impl ZtReport {
             ];
             for look in presets.iter().filter_map(|&preset| model.look(preset)) {
                 let visibility = printed.and_then(|p| p.visibility()).map(|v| format!("{v:.3}"));
-                let seconds = printed.and_then(|p| p.measure_seconds()).map(minutes);
+                let printed_seconds = printed.and_then(|p| p.measure_seconds()).map(minutes);
                 row.push(beside(format!("{:.3}", look.visibility), visibility));
-                row.push(beside(format!("{:.1} s", look.seconds), seconds));
+                row.push(beside(format!("{} s", seconds(look.seconds)), printed_seconds));
             }
             table = table.row(row);
         }
         table
     }
 
-    /// Table 2: by how much VG's pictures are nearer to the original than QB's; what the paper prints in brackets. It has
-    /// columns for what was studied, and for equal counts where some levels have others.
+    /// Table 2: by how much VG's pictures are nearer to the original than QB's; what the paper prints in brackets. Where some
+    /// levels have other counts than were asked for, the improvement over the rest, and how many these are.
     #[must_use]
     pub fn table2(&self) -> Table {
         let columns = self.columns();
@@ -67,10 +67,6 @@ impl ZtReport {
         for summary in self.summary.iter().filter(|summary| summary.levels == Levels::All) {
             let pair = (summary.visibility, summary.quadric);
             columns.push(Column::of_gain(pair));
-            let differs = |m: &ModelReport| m.less_error(pair, Levels::All) != m.less_error(pair, Levels::EqualCounts);
-            if self.models.iter().any(differs) {
-                columns.push(Column::of_equal_counts(pair));
-            }
         }
         columns
     }
@@ -102,7 +98,7 @@ impl Column {
     fn of_seconds((preset, metric): (Preset, Metric)) -> Self {
         let cell = move |model: &ModelReport| {
             let printed = printed(model).filter(|_| preset == Preset::Paper).map(|row| minutes(row.simplify_seconds));
-            model.run(preset, metric).map_or_else(dash, |run| beside(format!("{:.1}", run.seconds), printed))
+            model.run(preset, metric).map_or_else(dash, |run| beside(seconds(run.seconds), printed))
         };
         Self { head: short(preset, metric), unit: "s".to_owned(), cell: Box::new(cell) }
     }
@@ -111,20 +107,19 @@ impl Column {
         let cell = move |model: &ModelReport| {
             let printed = printed(model).filter(|_| pair == (Preset::Paper, Preset::Paper));
             let gain = model.less_error(pair, Levels::All).map_or_else(dash, percent);
-            beside(gain, printed.map(|row| format!("{:.2}", row.less_error)))
+            let equal = at_equal_counts(model, pair).map(|gain| format!("; {gain}")).unwrap_or_default();
+            beside(gain, printed.map(|row| format!("{:.2}", row.less_error))) + &equal
         };
         Self { head: short(pair.0, Metric::Visibility), unit: percent_of(pair), cell: Box::new(cell) }
     }
+}
 
-    fn of_equal_counts(pair: PresetPair) -> Self {
-        let cell = move |model: &ModelReport| {
-            let Some(improvement) = model.improvement(pair) else { return dash() };
-            let of = model.run(pair.0, Metric::Visibility).map_or(0, |run| run.shared_levels().count());
-            let gain = improvement.less_error_at_equal_counts.map_or_else(dash, percent);
-            format!("{gain}, {} of {of}", improvement.equal_counts)
-        };
-        Self { head: "at equal counts, levels".to_owned(), unit: percent_of(pair), cell: Box::new(cell) }
-    }
+/// `48.5 at 6 of 7`: the improvement over the levels with equal counts; `None` where these are all.
+fn at_equal_counts(model: &ModelReport, pair: PresetPair) -> Option<String> {
+    let improvement = model.improvement(pair)?;
+    let levels = model.run(pair.0, Metric::Visibility)?.shared_levels().count();
+    let gain = improvement.less_error_at_equal_counts.map_or_else(dash, percent);
+    (improvement.equal_counts < levels).then(|| format!("{gain} at {} of {levels}", improvement.equal_counts))
 }
 
 impl ModelReport {
@@ -208,6 +203,11 @@ fn mean(mean: MeanImprovement) -> String {
 
 fn rank(rank: Option<f64>) -> String {
     rank.map_or_else(dash, |rank| format!("{rank:.2}"))
+}
+
+/// Three digits that matter, but no part of a millisecond.
+fn seconds(value: f64) -> String {
+    if value < 1.0 { format!("{value:.3}") } else { significant(value) }
 }
 
 /// Three digits that matter.

@@ -14,12 +14,12 @@ pub(super) const SUBTITLE: &str = "The tables and figures of E. Zhang and G. Tur
 pub(super) const TABLE1: &str = "V(M) is the share of directions from which the surface is seen from outside, each counted by \
     its cosine (eq. 3.2). Options: the paper's, then the best.";
 pub(super) const TABLE2: &str = "QB collapses by quadric error alone, VG also by visibility: seconds first, without looking. The \
-    last columns tell by how much the image error of VG is below that of QB, mean over the levels; below zero VG is worse. At \
-    equal counts: over those levels alone at which both have the triangles that were asked for, and how many these are. VG best \
+    last columns tell by how much the image error of VG is below that of QB, mean over the levels; below zero VG is worse. Behind a \
+    semicolon: over those levels alone at which both have the triangles that were asked for, and how many these are. VG best \
     deletes hidden triangles first and can be left with fewer; having fewer is no help to its pictures.";
 pub(super) const GAINS: &str = "By how much the image error of VG is below that of QB (%), mean over the models, how many in \
     brackets; V(M) is the first of table 1. Then Spearman's rank correlation of V(M), as either preset counts it, with that \
-    improvement; -1: the less visible a model is, the more is gained.";
+    improvement; -1: the less visible a model is, the more is gained. Fewer than five models have none: their order says nothing.";
 pub(super) const LEVELS: &str = "First the image error (RMSE, grey levels), then how many triangles QB takes for the image error \
     of VG in this row, between levels by interpolation, then the geometric error (RMS, % of the diagonal). “With”: the triangles \
     of a level that has not as many as were asked for.";

@@ -1,9 +1,11 @@
 //! The files of a finished study.
 
-use std::io;
+use std::fs;
+use std::io::{self, ErrorKind};
 use std::path::Path;
 
 use super::ZtRequest;
+use super::figures::OUTLINE;
 use super::plots::Plot;
 use super::report::{ModelReport, ZtReport};
 use super::words;
@@ -18,28 +20,34 @@ const OUTLINE_SAMPLES: usize = 900;
 const OUTLINE_CAMERAS: usize = 360;
 
 impl ZtReport {
-    /// Writes tables, plots and `json` into the study's directory; what an earlier run wrote there is replaced.
+    /// Writes tables, plots, `json` and the page into the study's directory; what an earlier run wrote there is replaced.
+    /// `commands` is what was typed, for the page to tell.
     ///
     /// # Errors
     /// [`crate::Error::Write`].
-    pub fn write(&self, request: &ZtRequest, json: &str) -> Result<()> {
+    pub fn write(&self, request: &ZtRequest, json: &str, commands: &[String]) -> Result<()> {
         let write = |name: &str, how: &dyn Fn(&mut dyn io::Write) -> io::Result<()>| {
             write_atomic(&request.output.join(Path::new(name)), true, |out| how(out))
         };
         write("zt.json", &|out| out.write_all(json.as_bytes()))?;
         write("models.csv", &|out| self.write_models_csv(out))?;
         write("levels.csv", &|out| self.write_levels_csv(out))?;
-        write("convergence.csv", &|out| self.write_convergence_csv(out))?;
+        if request.convergence {
+            write("convergence.csv", &|out| self.write_convergence_csv(out))?;
+        } else {
+            remove_stale(&request.output.join("convergence.csv"))?;
+        }
         let outline = Outline::harbour();
         let picture = outline_picture(&outline, &outline.diagram(OUTLINE_SAMPLES, OUTLINE_CAMERAS));
-        write("outline.png", &|out| picture.write_png(out))?;
+        write(OUTLINE, &|out| picture.write_png(out))?;
         write("tables.md", &|out| out.write_all(self.to_markdown(request).as_bytes()))?;
         let plots = self.plots(&request.output)?;
         for plot in &plots {
             write(&plot.file, &|out| out.write_all(plot.svg.as_bytes()))?;
         }
-        let html = self.page(request, &plots)?.to_html()?;
-        write("report.html", &|out| out.write_all(html.as_bytes()))
+        let html = self.page(request, &plots, commands)?.to_html()?;
+        write("report.html", &|out| out.write_all(html.as_bytes()))?;
+        request.page.iter().try_for_each(|page| write_atomic(page, true, |out| out.write_all(html.as_bytes())))
     }
 
     /// All tables as Markdown, with the words that belong to them.
@@ -69,5 +77,15 @@ impl ZtReport {
             Ok(self.correlation_plot()?.into_iter().chain(models.into_iter().flatten()).collect())
         };
         all().map_err(|e| Error::Write { path: directory.to_owned(), message: e.to_string() })
+    }
+}
+
+/// Removes what an earlier run wrote and this one has nothing to say about.
+fn remove_stale(path: &Path) -> Result<()> {
+    match fs::remove_file(path) {
+        Err(e) if e.kind() != ErrorKind::NotFound => {
+            Err(Error::Write { path: path.to_owned(), message: e.to_string() })
+        }
+        _ => Ok(()),
     }
 }

@@ -156,6 +156,7 @@ fn figures_markup(shown: &Figures) -> Markup {
                 }
             }
         }
+        @if let Some(legend) = &shown.legend { (legend_markup(legend)) }
     }
 }
 

@@ -88,12 +88,14 @@ pub struct Table {
 }
 
 /// Pictures and plots in rows.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Figures {
     /// How many stand side by side where there is room; phones show two, an odd one and plots across both.
     pub columns: usize,
     /// From the left, then down.
     pub figures: Vec<Figure>,
+    /// What the colours of all of them mean, where they mean something.
+    pub legend: Option<Legend>,
 }
 
 /// A picture or a plot.

@@ -58,7 +58,12 @@ impl Stand {
             Self::StandIn(model) => {
                 let printed = thousands(model.triangles as u64);
                 let meaning = "another model, so only the tendency compares";
-                format!("stand-in for {}: {ours} triangles in place of {printed}; {meaning}", model.name)
+                let counts = if triangles == model.triangles {
+                    format!("{ours} triangles, as many as printed")
+                } else {
+                    format!("{ours} triangles in place of {printed}")
+                };
+                format!("stand-in for {}: {counts}; {meaning}", model.name)
             }
             Self::None => "no model of the paper".to_owned(),
         }
@@ -96,6 +101,8 @@ mod tests {
         let expected = "stand-in for Motor: 110,336 triangles in place of 140,113; another model, so only the tendency \
                         compares";
         assert_eq!(sentence, expected);
+        let stand_in = Stand::StandIn(PaperModel::named("bunny").unwrap());
+        assert!(stand_in.sentence(69_451).starts_with("stand-in for Bunny: 69,451 triangles, as many as printed;"));
         assert!(of("buddha", 1_087_716).sentence(1_087_716).contains("1,087,716 triangles, 1,087,416 printed"));
         assert!(
             of("bunny", 69_451)
