@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::io;
 
 use super::ZtRequest;
 use super::cell::LookFinding;
@@ -69,8 +68,7 @@ impl Room {
         let plots: usize = plots.iter().map(|plot| plot.figure().image.embedded_bytes()).sum();
         let free = (FIGURES_BYTES + MODELS_BYTES).saturating_sub(models + plots);
         let sources = sources(report, request)?;
-        let as_is = sources.iter().map(|source| Image::Png(source.bytes.clone())).collect();
-        let images = fitted(&sources, as_is, free)?;
+        let images = fitted(&sources, free)?;
         Ok(Self { images: sources.into_iter().map(|source| source.name).zip(images).collect() })
     }
 
@@ -102,29 +100,76 @@ fn sources(report: &ZtReport, request: &ZtRequest) -> Result<Vec<Source>> {
     names.into_iter().map(read).collect()
 }
 
-/// `images`, which show the sources, or coarser and smaller ones, until all together take no more than `free` bytes.
-fn fitted(sources: &[Source], mut images: Vec<Image>, free: usize) -> Result<Vec<Image>> {
-    let mut scale = 1.0;
+/// The pictures as they are, or all coarser and smaller, until together they take no more than `free` bytes.
+fn fitted(sources: &[Source], free: usize) -> Result<Vec<Image>> {
+    let mut images: Vec<Image> = sources.iter().map(|source| Image::Png(source.bytes.clone())).collect();
+    let mut scale: Option<f64> = None;
     loop {
         let taken: usize = images.iter().map(Image::embedded_bytes).sum();
-        if taken <= free || scale < SMALLEST {
+        if taken <= free || scale.is_some_and(|scale| scale < SMALLEST) {
             return Ok(images);
         }
-        let smaller = |source: &Source| {
-            let fault = |e: io::Error| Error::Limit { message: format!("{} for the page: {e}", source.name) };
-            smaller(&Picture::from_png(&source.bytes)?, source.part, scale).map_err(fault)
-        };
-        images = sources.iter().map(smaller).collect::<Result<_>>()?;
-        let taken: usize = images.iter().map(Image::embedded_bytes).sum();
         // Bytes go with the pixels.
-        scale *= libm::sqrt(CAUTION * free as f64 / taken as f64).min(CAUTION);
+        let shrink = libm::sqrt(CAUTION * free as f64 / taken as f64).min(CAUTION);
+        let next = scale.map_or(1.0, |scale| shrink * scale);
+        images = sources.iter().map(|source| source.smaller(next)).collect::<Result<_>>()?;
+        scale = Some(next);
     }
 }
 
-/// A picture in coarser shades, at a share of its size on the page.
-fn smaller(picture: &Picture, part: Part, scale: f64) -> io::Result<Image> {
-    let [width, height] = part.most(picture).map(|pixels| (scale * pixels) as u32);
-    let mut file = Vec::new();
-    picture.scaled_down(width, height).write_coarse_png(&mut file)?;
-    Ok(Image::Png(file))
+impl Source {
+    /// The picture in coarser shades, at a share of its size on the page.
+    fn smaller(&self, scale: f64) -> Result<Image> {
+        let picture = Picture::from_png(&self.bytes)?;
+        let [width, height] = self.part.most(&picture).map(|pixels| (scale * pixels) as u32);
+        let mut file = Vec::new();
+        let written = picture.scaled_down(width, height).write_coarse_png(&mut file);
+        written.map_err(|e| Error::Limit { message: format!("{} for the page: {e}", self.name) })?;
+        Ok(Image::Png(file))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    /// A picture that no compression makes small.
+    fn noise(part: Part, width: u32, height: u32) -> Source {
+        let level = |i: u32| (i.wrapping_mul(2_654_435_761) >> 13) as f32 % 256.0;
+        let grey: Vec<f32> = (0..width * height).map(level).collect();
+        let mut bytes = Vec::new();
+        Picture::from_grey(width, height, &grey).unwrap().write_png(&mut bytes).unwrap();
+        Source { name: "noise.png".to_owned(), part, bytes }
+    }
+
+    fn sizes(images: &[Image]) -> Vec<[u32; 2]> {
+        let size = |image: &Image| {
+            let Image::Png(file) = image else { return [0, 0] };
+            // The header of a PNG file has width and height behind 16 bytes.
+            [16, 20].map(|at| u32::from_be_bytes(file[at..at + 4].try_into().unwrap()))
+        };
+        images.iter().map(size).collect()
+    }
+
+    fn bytes(images: &[Image]) -> usize {
+        images.iter().map(Image::embedded_bytes).sum()
+    }
+
+    #[test]
+    fn pictures_stay_whole_where_they_fit_and_shrink_together_where_they_do_not() {
+        let sources = [noise(Part::Side, 400, 200), noise(Part::HeatMap, 700, 700), noise(Part::Diagram, 900, 258)];
+        let whole = fitted(&sources, usize::MAX).unwrap();
+        assert_eq!(sizes(&whole), [[400, 200], [700, 700], [900, 258]]);
+        let page = fitted(&sources, bytes(&whole) - 1).unwrap();
+        assert_eq!(sizes(&page), [[320, 160], [560, 560], [640, 130]], "as large as the page shows them");
+        let free = bytes(&page) / 2;
+        let small = fitted(&sources, free).unwrap();
+        assert!(bytes(&small) <= free && bytes(&small) > free / 2, "{} of {free}", bytes(&small));
+        let [side, heat_map, _] = sizes(&small).try_into().unwrap();
+        let [a, b] = [f64::from(side[0]) / 320.0, f64::from(heat_map[0]) / 560.0];
+        assert!((a - b).abs() < 0.01 && a < 1.0, "{a} {b}");
+        assert!(!fitted(&sources, 1).unwrap().is_empty(), "ends even where nothing fits");
+    }
 }
