@@ -124,7 +124,7 @@ fn table_markup(table: &Table) -> Markup {
                     @for (number, row) in table.rows.iter().enumerate() {
                         tr {
                             @for (column, cell) in row.iter().enumerate() {
-                                @if column == 0 { th scope="row" { (cell) } }
+                                @if column == 0 { th scope="row" { (breakable(cell)) } }
                                 @else if table.best.contains(&[number, column]) { td { strong { (cell) } } }
                                 @else { td { (cell) } }
                             }
@@ -134,6 +134,11 @@ fn table_markup(table: &Table) -> Markup {
             }
         }
     }
+}
+
+/// A name that may be broken into lines behind each `_`.
+fn breakable(name: &str) -> Markup {
+    html! { @for (number, part) in name.split_inclusive('_').enumerate() { @if number > 0 { wbr; } (part) } }
 }
 
 /// Pictures keep their columns, since they are read along them; phones show pairs, and across both what has no partner.

@@ -48,6 +48,12 @@ fn names_are_escaped_wherever_they_stand() {
 }
 
 #[test]
+fn the_names_of_rows_may_be_broken_between_their_words() {
+    let html = page("two_words<.ply").to_html().unwrap();
+    assert!(html.contains("<th scope=\"row\">two_<wbr>words&lt;.ply</th>"));
+}
+
+#[test]
 fn nothing_may_be_loaded_and_no_script_but_its_own_may_run() {
     let html = page("part.ply").to_html().unwrap();
     let policy = html.split("Content-Security-Policy\" content=\"").nth(1).unwrap().split('"').next().unwrap();
