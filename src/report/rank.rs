@@ -1,5 +1,15 @@
 //! Whether two numbers of the same things rise together.
 
+/// Fewest things whose rank correlation says something: three are in perfect order, one way or the other, by chance in one
+/// case of three, five in one of sixty.
+const FEWEST: usize = 5;
+
+/// [`spearman`] where it says something; `None` for fewer than five things.
+#[must_use]
+pub fn rank_correlation(xs: &[f64], ys: &[f64]) -> Option<f64> {
+    (xs.len() >= FEWEST).then(|| spearman(xs, ys)).flatten()
+}
+
 /// Spearman's rank correlation of two numbers a thing: 1 where one rises with the other, -1 where it falls; ties share the
 /// mean of their ranks.
 ///
@@ -75,6 +85,13 @@ mod tests {
         let less_error: Vec<f64> = rows.iter().map(|row| row.less_error).collect();
         // Two neighbours of six exchanged: -(1 - 6 · 2 / 210).
         assert!((spearman(&visibility, &less_error).unwrap() + 33.0 / 35.0).abs() < TOLERANCE);
+    }
+
+    #[test]
+    fn the_order_of_fewer_than_five_says_nothing() {
+        let xs = [1.0, 2.0, 3.0, 4.0, 5.0];
+        assert_eq!(rank_correlation(&xs[..4], &xs[..4]), None);
+        assert_eq!(rank_correlation(&xs, &xs), Some(1.0));
     }
 
     #[test]

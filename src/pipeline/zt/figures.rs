@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::fs;
 
 use super::ZtRequest;
-use super::cell::LookFinding;
 use super::plots::Plot;
 use super::report::ZtReport;
 use crate::error::{Error, Result};
@@ -52,7 +51,8 @@ impl Part {
             Self::HeatMap => 560.0,
             // Half of its cameras. Its columns are as many as the triangles and mean little one by one.
             Self::Diagram => return [640.0, 130.0],
-            Self::Outline => 1184.0,
+            // Smaller, its words could not be read.
+            Self::Outline => return [picture.width(), picture.height()].map(f64::from),
         };
         let [width, height] = [picture.width(), picture.height()].map(f64::from);
         let shrink = (widest / width.max(height)).min(1.0);
@@ -88,7 +88,7 @@ fn sources(report: &ZtReport, request: &ZtRequest) -> Result<Vec<Source>> {
     let mut names = vec![(OUTLINE, Part::Outline)];
     for findings in report.models.iter().map(|model| &model.findings) {
         names.extend(findings.looks.iter().map(|look| (look.bare_heat_map.as_str(), Part::HeatMap)));
-        names.extend(findings.looks.first().map(|look: &LookFinding| (look.diagram.as_str(), Part::Diagram)));
+        names.extend(findings.looks.first().map(|look| (look.diagram.as_str(), Part::Diagram)));
         let sheets = findings.pictures.iter().flat_map(|pictures| &pictures.sheets);
         names.extend(sheets.flat_map(|sheet| &sheet.shown).map(|shown| (shown.file.as_str(), Part::Side)));
     }
@@ -121,6 +121,7 @@ impl Source {
     /// The picture in coarser shades, at a share of its size on the page.
     fn smaller(&self, scale: f64) -> Result<Image> {
         let picture = Picture::from_png(&self.bytes)?;
+        let scale = if self.part == Part::Outline { 1.0 } else { scale };
         let [width, height] = self.part.most(&picture).map(|pixels| (scale * pixels) as u32);
         let mut file = Vec::new();
         let written = picture.scaled_down(width, height).write_coarse_png(&mut file);

@@ -5,11 +5,7 @@ use serde::Serialize;
 use super::gain::{Levels, PAIRS, mean};
 use super::report::ModelReport;
 use crate::pipeline::Preset;
-use crate::report::rank::spearman;
-
-/// Fewest models whose rank correlation is told: three are in perfect order, one way or the other, by chance in one case of
-/// three, five in one of sixty.
-const FEWEST_RANKED: usize = 5;
+use crate::report::rank;
 
 /// V(M) that parts models which hide much from those which hide little.
 pub(super) const HALF: f64 = 0.5;
@@ -95,7 +91,7 @@ impl Correlation {
     fn of(preset: Preset, models: &[ModelReport], gain: impl Fn(&ModelReport) -> Option<f64>) -> Option<Self> {
         let known = |model: &ModelReport| Some((model.visibility(preset)?, gain(model)?));
         let (visibility, gains): (Vec<f64>, Vec<f64>) = models.iter().filter_map(known).unzip();
-        let rank_correlation = spearman(&visibility, &gains).filter(|_| gains.len() >= FEWEST_RANKED);
+        let rank_correlation = rank::rank_correlation(&visibility, &gains);
         (!gains.is_empty()).then_some(Self { preset, rank_correlation, models: gains.len() })
     }
 }

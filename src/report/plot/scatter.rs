@@ -7,7 +7,7 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
 use super::{Drawn, GRID, PAIR, plain, svg_of};
-use crate::report::rank::spearman;
+use crate::report::rank::rank_correlation;
 
 /// Points with names over linear axes, in one or several groups. A line above tells each group's rank correlation, in its
 /// colour: the legend. Points of the same name are joined, and named at the last of them.
@@ -117,11 +117,11 @@ impl ScatterPlot {
         self.coloured_points().into_iter().map(|(p, _)| value(p)).collect()
     }
 
-    /// `● paper: rank correlation −0.71 (7 models)`
+    /// `● paper: Spearman's rank correlation −0.71 (7 models)`
     fn correlation(&self, group: &ScatterGroup) -> String {
         let points: Vec<&NamedPoint> = group.points.iter().filter(|p| p.is_finite()).collect();
         let [xs, ys] = [|p: &&NamedPoint| p.x, |p: &&NamedPoint| p.y].map(|f| points.iter().map(f).collect::<Vec<_>>());
-        let value = spearman(&xs, &ys).map_or("unknown".to_owned(), |r| format!("{r:.2}").replace('-', "−"));
+        let value = rank_correlation(&xs, &ys).map_or("unknown".to_owned(), |r| format!("{r:.2}").replace('-', "−"));
         format!("● {}: Spearman's rank correlation {value} ({} models)", group.name, points.len())
     }
 }
@@ -223,12 +223,13 @@ mod tests {
 
     #[test]
     fn each_group_has_its_own_correlation() {
-        let rising = group("best", &[("a", 0.0, 1.0), ("b", 1.0, 2.0), ("c", 2.0, 3.0), ("d", f64::NAN, 0.0)]);
-        let svg = plot(vec![rising, group("one", &[("e", 0.5, -1.0)])]).to_svg().unwrap();
-        for text in ["rank correlation 1.00 (3 models)", "rank correlation unknown (1 models)"] {
+        let rising = [("a", 0.0, 1.0), ("b", 1.0, 2.0), ("c", 2.0, 3.0), ("d", 3.0, 4.0), ("e", 4.0, 5.0)];
+        let rising = group("best", &[&rising[..], &[("f", f64::NAN, 0.0)]].concat());
+        let svg = plot(vec![rising, group("one", &[("g", 0.5, -1.0)])]).to_svg().unwrap();
+        for text in ["rank correlation 1.00 (5 models)", "rank correlation unknown (1 models)"] {
             assert!(svg.contains(text), "{text}");
         }
-        assert_eq!(svg.matches("<circle").count(), 4);
+        assert_eq!(svg.matches("<circle").count(), 6);
     }
 
     #[test]
