@@ -285,10 +285,12 @@ fn contact_sheet(reference: Portrait<'_>, tests: Vec<Portrait<'_>>, up: [f64; 3]
 /// Where people stand in [`views_around`].
 pub(super) const VIEW_NAMES: [&str; 3] = ["from the front", "from the back", "from below"];
 
-/// Three views for people: from the front right above, from the back left above, from below.
+/// Three views for people: from the front right above, from the back left above, from below. The front is toward z, as in
+/// glTF, and toward x where z is up, as robots have it.
 pub(super) fn views_around(up: DVec3) -> [DVec3; 3] {
     let up = up.normalize();
-    let right = up.any_orthonormal_vector();
+    let front = if up.z.abs() > 0.9 { DVec3::X } else { DVec3::Z };
+    let right = up.cross(front).normalize();
     let front = right.cross(up);
     [1.0 * right + 1.3 * front + 0.8 * up, -1.3 * right - 1.0 * front + 0.6 * up, 0.4 * right - 0.9 * front - 0.9 * up]
         .map(DVec3::normalize)

@@ -34,6 +34,7 @@ use crate::error::{Error, Result};
 use crate::io::{self, ReadOptions};
 use crate::mesh::TriMesh;
 use crate::pipeline::{MeshConvergence, Metric, Observer, Preset};
+use crate::report::page::MODELS_BYTES;
 use crate::report::paper::PaperModel;
 use crate::simplify::Target;
 use crate::visibility::{Estimator, MeasureOptions, estimated_pieces};
@@ -46,8 +47,8 @@ use store::Store;
 /// evenly over the logarithmic axis of figure 4.
 pub const LEVELS: [f64; 7] = [0.5, 0.25, 0.125, 0.0625, 0.031_25, 0.015_625, 0.007_812_5];
 
-/// Most models that can be turned on a page; they share its bytes.
-const MOST_VIEWERS: usize = 6;
+/// Of how many large models there is room on a page to be turned whole, originals of 150,000 triangles beside their results.
+const WHOLE_VIEWERS: usize = 3;
 
 /// What [`study_zt`] does.
 #[derive(Debug, Clone)]
@@ -74,6 +75,8 @@ pub struct ZtRequest {
     pub memory_limit: Option<u64>,
     /// The study's directory.
     pub output: PathBuf,
+    /// What page and tables say of the machine beside times: threads, processor; may be empty.
+    pub machine: String,
     /// Another place for the page, beside `report.html` in the directory.
     pub page: Option<PathBuf>,
 }
@@ -164,11 +167,22 @@ pub fn plan_zt(request: &ZtRequest) -> Result<Vec<PlannedCell>> {
 /// before an error stays.
 pub fn study_zt(request: &ZtRequest, observer: &dyn Observer) -> Result<ZtReport> {
     request.check()?;
-    // All files are there, before the first of them is worked on.
-    request.models.iter().try_for_each(|model| Store::of(model, request).map(drop))?;
+    // All files are there and hold a mesh, before the first of them is worked on.
+    request.models.iter().try_for_each(|model| look_into(model, request))?;
     let study = |model| study_model(model, request, observer);
     let findings = request.models.iter().map(study).collect::<Result<_>>()?;
     Ok(ZtReport::of(&request.models, findings, store::others(request)?))
+}
+
+/// Reads the model if there is anything to do about it, only to say what is wrong with it.
+fn look_into(model: &ZtModel, request: &ZtRequest) -> Result<()> {
+    let store = Store::of(model, request)?;
+    for cell in Cell::all(request) {
+        if !store.has(cell)? {
+            return io::read(&model.path, &request.read).map(drop);
+        }
+    }
+    Ok(())
 }
 
 fn study_model(model: &ZtModel, request: &ZtRequest, observer: &dyn Observer) -> Result<ModelFindings> {
@@ -211,6 +225,7 @@ fn found<T: Finding>(store: &Store<'_>, cell: Cell, work: impl FnOnce() -> Resul
     if let Some(finding) = store.find(cell)? {
         return Ok(finding);
     }
+    store.forget(cell)?;
     let finding = work()?;
     store.keep(cell, &finding)?;
     Ok(finding)
@@ -232,9 +247,9 @@ impl ZtRequest {
         self.presets.iter().try_for_each(|&preset| self.measure(preset).check())
     }
 
-    /// Models of the page that can be turned; with more of them each would be too coarse beside its result.
-    fn viewers(&self) -> usize {
-        self.models.len().min(MOST_VIEWERS)
+    /// Bytes of the page for a model that can be turned.
+    fn viewer_share(&self) -> usize {
+        MODELS_BYTES / self.models.len().clamp(1, WHOLE_VIEWERS)
     }
 
     /// How a model is looked at.
@@ -268,19 +283,19 @@ impl ZtRequest {
     /// Every option that changes what a cell finds.
     fn words(&self, model: &ZtModel, cell: Cell) -> String {
         let read = ReadOptions { memory_limit: None, ..self.read.clone() };
-        let look =
-            |preset| format!("{:?} up {:?}", MeasureOptions { memory_limit: None, ..self.measure(preset) }, model.up);
+        let look = |preset| format!("{:?}", MeasureOptions { memory_limit: None, ..self.measure(preset) });
         let paper = model.paper.map(|paper| (paper.pictures, paper.equal_error));
         let run =
             || format!("levels {:?}, counts {paper:?}, {} samples, seed {}", self.levels, self.samples, self.seed);
         match cell {
-            Cell::Look(preset) => format!("{read:?} {}", look(preset)),
-            Cell::Run(preset, _) | Cell::Pictures(preset) => {
-                format!("{read:?} {} {:?} {}", look(preset), preset.simplify(), run())
+            Cell::Look(preset) => format!("{read:?} {} up {:?}", look(preset), model.up),
+            Cell::Run(preset, _) => format!("{read:?} {} {:?} {}", look(preset), preset.simplify(), run()),
+            Cell::Pictures(preset) => {
+                format!("{read:?} {} {:?} {} up {:?}", look(preset), preset.simplify(), run(), model.up)
             }
             Cell::Viewer => {
                 let presets: Vec<String> = self.presets.iter().map(|&preset| look(preset)).collect();
-                format!("{read:?} {presets:?} {} {} models", run(), self.viewers())
+                format!("{read:?} {presets:?} {} {} bytes", run(), self.viewer_share())
             }
             Cell::Convergence => format!("{read:?} {:?}", self.measure(Preset::Paper).resolution),
         }

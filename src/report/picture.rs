@@ -1,7 +1,7 @@
 //! A picture in memory: pixels, boxes, text, PNG.
 
-mod coarse;
 mod crop;
+mod smaller;
 
 use std::io::{self, Write};
 

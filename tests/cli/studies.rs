@@ -125,7 +125,7 @@ fn zt_turns_one_model_up_and_keeps_what_was_found_of_the_others() {
         let cells = plan["cells"].as_array().unwrap().iter().filter(|cell| cell["model"] == name);
         cells.filter(|cell| cell["done"] == false).count()
     };
-    assert_eq!((anew("cube"), anew("box")), (0, 5));
+    assert_eq!((anew("cube"), anew("box")), (0, 2), "heat map and pictures; no simplifier knows what is up");
     let object = json(home.path(), &turned);
     assert_eq!((&object["models"][0]["up"][2], &object["models"][1]["up"][1]), (&1.0.into(), &1.0.into()));
 

@@ -15,7 +15,7 @@ use crate::cli::estimate::{Task, study_seconds};
 use crate::cli::failure::Failure;
 use crate::cli::flags::ReadingFlags;
 use crate::cli::outputs::{self, Kind, Planned};
-use crate::cli::system::peak_mib;
+use crate::cli::system::{peak_mib, processor};
 use crate::cli::text::{duration, table};
 use crate::cli::values;
 use crate::cli::watch::Watch;
@@ -113,6 +113,7 @@ impl Flags {
             convergence: !self.no_convergence,
             memory_limit: console.global.memory_limit,
             output: self.output.clone(),
+            machine: machine(),
             page: self.page.clone(),
         })
     }
@@ -167,11 +168,23 @@ pub fn run(flags: &Flags, console: &Console) -> std::result::Result<(), Failure>
         return dry_run(&request, console);
     }
     let task = Task::Study { resolution: flags.resolution };
-    let report = study_zt(&request, &Watch::new(console, task).deleting_knowingly(true))?;
+    let report = study_zt(&request, &Watch::new(console, task).deleting_knowingly(true));
+    if matches!(report, Err(Error::Cancelled)) {
+        let directory = request.output.display();
+        console.announce(&format!("what was found is kept in {directory}; the same command goes on from there"));
+    }
+    let report = report?;
     let object = Object { options: options(&request), report: &report, peak_mb: peak_mib() };
     let json = console.to_json(&object)?;
     report.write(&request, &json, std::slice::from_ref(&console.command_line))?;
     console.result(&object, &text(&report, &request), true)
+}
+
+/// `on 2 threads (Intel(R) Xeon(R) Processor)`
+fn machine() -> String {
+    let threads = rayon::current_num_threads();
+    let of = processor().map(|name| format!(" ({name})")).unwrap_or_default();
+    format!("on {threads} thread{}{of}", if threads == 1 { "" } else { "s" })
 }
 
 /// The options in force.

@@ -44,8 +44,13 @@ impl ConvergenceReport {
         shown_names(&self.meshes.iter().map(|mesh| mesh.file.as_path()).collect::<Vec<_>>())
     }
 
-    /// A plot for each panel, so that phones put one below the other.
     fn plots(&self) -> Result<Section> {
+        let figures = Figures { columns: 2, figures: self.figures()?, legend: None };
+        Ok(section("Error by the number of cameras", PLOTS, Content::Figures(figures)))
+    }
+
+    /// A plot for each panel, so that phones put one below the other.
+    pub(in crate::pipeline) fn figures(&self) -> Result<Vec<Figure>> {
         let LogLogPlot { panels, x, y, slope } = self.plot();
         let figure = |panel| {
             let plot = LogLogPlot { panels: vec![panel], x: x.clone(), y: y.clone(), slope };
@@ -53,12 +58,7 @@ impl ConvergenceReport {
             let svg = plot.to_svg().map_err(|e| Error::Limit { message: format!("a plot for the page: {e}") })?;
             Ok(Figure { image: Image::Svg(svg), caption })
         };
-        let figures = panels.into_iter().map(figure).collect::<Result<Vec<_>>>()?;
-        Ok(section(
-            "Error by the number of cameras",
-            PLOTS,
-            Content::Figures(Figures { columns: 2, figures, legend: None }),
-        ))
+        panels.into_iter().map(figure).collect()
     }
 
     fn notes(&self) -> Vec<String> {

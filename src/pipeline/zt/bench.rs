@@ -29,7 +29,6 @@ use crate::pipeline::{
 };
 use crate::report::colour::ColourMap;
 use crate::report::legend::with_legend;
-use crate::report::page::MODELS_BYTES;
 use crate::report::picture::Picture;
 use crate::simplify::{Level, Target};
 use crate::visibility::{Hidden, Look, MeasureOptions, Visibility};
@@ -106,9 +105,12 @@ impl<'a> Bench<'a> {
 
     /// Simplifies through all levels, and says how far each is from the original.
     pub fn run(&self, preset: Preset, metric: Metric) -> Result<RunFinding> {
-        let look = match metric {
-            Metric::Quadric => None,
-            Metric::Visibility => Some(self.seen(preset)?),
+        let (look, hidden_seconds) = match metric {
+            Metric::Quadric => (None, None),
+            Metric::Visibility => {
+                let (look, seconds) = self.seen(preset)?;
+                (Some(look), (preset.hidden() == Hidden::Delete).then_some(seconds))
+            }
         };
         let counts = self.request.counts(self.model, self.triangles());
         let targets = counts.iter().map(|&(_, count)| Target::Triangles(count)).collect();
@@ -128,17 +130,20 @@ impl<'a> Bench<'a> {
             let (triangles, topology) = (level.mesh.triangle_count(), level.topology);
             levels.push(LevelFinding { share, asked, triangles, errors, topology, mesh });
         }
-        Ok(RunFinding { preset, metric, hidden_deleted: simplified.hidden_deleted, seconds, levels })
+        Ok(RunFinding { preset, metric, hidden_deleted: simplified.hidden_deleted, hidden_seconds, seconds, levels })
     }
 
-    /// What the cell that looks has kept.
-    fn seen(&self, preset: Preset) -> Result<Look> {
+    /// What the cell that looks has kept, and what is hidden for sure; with the seconds that this took.
+    fn seen(&self, preset: Preset) -> Result<(Look, f64)> {
         let options = self.request.measure(preset);
         let mut observation = self.observation(&options)?;
         let visibility = observation.visibility(self.observer)?;
-        let hidden = observation.hidden(preset.hidden(), &visibility, self.observer)?;
-        observation.keep(&visibility, (preset.hidden() == Hidden::Delete).then_some(&hidden))?;
-        Ok(Look { visibility, hidden })
+        let subject = observation.subject()?;
+        let mut clock = Clock::start();
+        // Not kept for another run: the time belongs to the finding.
+        let hidden = preset.hidden().marks(subject, &visibility, &options, self.observer)?;
+        let seconds = clock.lap();
+        Ok((Look { visibility, hidden }, seconds))
     }
 
     fn errors(&self, levels: &[Level], preset: Preset) -> Result<Vec<LevelErrors>> {
@@ -208,8 +213,7 @@ impl<'a> Bench<'a> {
         });
         let result = result.transpose()?;
         let exhibits: Vec<&Exhibit> = std::iter::once(&original).chain(&result).collect();
-        let share = MODELS_BYTES / self.request.viewers();
-        Ok(ViewerFinding { models: models(&exhibits, share, self.observer)? })
+        Ok(ViewerFinding { models: models(&exhibits, self.request.viewer_share(), self.observer)? })
     }
 
     /// How V depends on the number of cameras, in the paper's pictures; the second reference shares no camera with the

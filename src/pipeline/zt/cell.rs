@@ -90,6 +90,8 @@ pub struct RunFinding {
     pub metric: Metric,
     /// Hidden triangles that were removed first.
     pub hidden_deleted: usize,
+    /// Wall time of making sure that they are hidden; `None` where none are removed.
+    pub hidden_seconds: Option<f64>,
     /// Wall time of collapsing; looking is not in it.
     pub seconds: f64,
     /// From large to small.

@@ -1,4 +1,4 @@
-//! The pictures of a study on its page: whole where they fit, else all smaller by the same share.
+//! The pictures of a study on its page: their files where they fit, else as JPEG, else all smaller by the same share.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -47,11 +47,10 @@ impl Part {
     /// Pixels that a picture has at most where they are made smaller; a wide page shows about as many.
     fn most(self, picture: &Picture) -> [f64; 2] {
         let widest: f64 = match self {
-            Self::Side => 320.0,
-            Self::HeatMap => 560.0,
+            Self::Side => 400.0,
+            Self::HeatMap => 600.0,
             // Half of its cameras. Its columns are as many as the triangles and mean little one by one.
-            Self::Diagram => return [640.0, 130.0],
-            // Smaller, its words could not be read.
+            Self::Diagram => return [800.0, 130.0],
             Self::Outline => return [picture.width(), picture.height()].map(f64::from),
         };
         let [width, height] = [picture.width(), picture.height()].map(f64::from);
@@ -65,7 +64,7 @@ impl Room {
     pub fn of(report: &ZtReport, request: &ZtRequest, plots: &[Plot]) -> Result<Self> {
         let viewers = report.models.iter().flat_map(|model| &model.findings.viewer);
         let models: usize = viewers.flat_map(|viewer| &viewer.models).map(|model| model.model.bytes()).sum();
-        let plots: usize = plots.iter().map(|plot| plot.figure().image.embedded_bytes()).sum();
+        let plots: usize = plots.iter().flat_map(|plot| &plot.figures).map(|plot| plot.image.embedded_bytes()).sum();
         let free = (FIGURES_BYTES + MODELS_BYTES).saturating_sub(models + plots);
         let sources = sources(report, request)?;
         let images = fitted(&sources, free)?;
@@ -100,7 +99,7 @@ fn sources(report: &ZtReport, request: &ZtRequest) -> Result<Vec<Source>> {
     names.into_iter().map(read).collect()
 }
 
-/// The pictures as they are, or all coarser and smaller, until together they take no more than `free` bytes.
+/// The pictures' files as they are, or all as JPEG, and smaller, until together they take no more than `free` bytes.
 fn fitted(sources: &[Source], free: usize) -> Result<Vec<Image>> {
     let mut images: Vec<Image> = sources.iter().map(|source| Image::Png(source.bytes.clone())).collect();
     let mut scale: Option<f64> = None;
@@ -118,15 +117,17 @@ fn fitted(sources: &[Source], free: usize) -> Result<Vec<Image>> {
 }
 
 impl Source {
-    /// The picture in coarser shades, at a share of its size on the page.
+    /// The picture as JPEG, at a share of its size on the page; of the outline its file, since nobody could read its words.
     fn smaller(&self, scale: f64) -> Result<Image> {
+        if self.part == Part::Outline {
+            return Ok(Image::Png(self.bytes.clone()));
+        }
         let picture = Picture::from_png(&self.bytes)?;
-        let scale = if self.part == Part::Outline { 1.0 } else { scale };
         let [width, height] = self.part.most(&picture).map(|pixels| (scale * pixels) as u32);
         let mut file = Vec::new();
-        let written = picture.scaled_down(width, height).write_coarse_png(&mut file);
+        let written = picture.scaled_down(width, height).write_jpeg(&mut file);
         written.map_err(|e| Error::Limit { message: format!("{} for the page: {e}", self.name) })?;
-        Ok(Image::Png(file))
+        Ok(Image::Jpeg(file))
     }
 }
 
@@ -136,20 +137,27 @@ mod tests {
 
     use super::*;
 
-    /// A picture that no compression makes small.
-    fn noise(part: Part, width: u32, height: u32) -> Source {
-        let level = |i: u32| (i.wrapping_mul(2_654_435_761) >> 13) as f32 % 256.0;
+    /// A shaded picture with some grain.
+    fn shaded(part: Part, width: u32, height: u32) -> Source {
+        let level = |i: u32| 100.0 + (i % width) as f32 / 8.0 + (i.wrapping_mul(2_654_435_761) >> 29) as f32;
         let grey: Vec<f32> = (0..width * height).map(level).collect();
         let mut bytes = Vec::new();
         Picture::from_grey(width, height, &grey).unwrap().write_png(&mut bytes).unwrap();
-        Source { name: "noise.png".to_owned(), part, bytes }
+        Source { name: "shaded.png".to_owned(), part, bytes }
     }
 
     fn sizes(images: &[Image]) -> Vec<[u32; 2]> {
         let size = |image: &Image| {
-            let Image::Png(file) = image else { return [0, 0] };
-            // The header of a PNG file has width and height behind 16 bytes.
-            [16, 20].map(|at| u32::from_be_bytes(file[at..at + 4].try_into().unwrap()))
+            match image {
+                // The header of a PNG file has width and height behind 16 bytes,
+                Image::Png(file) => [16, 20].map(|at| u32::from_be_bytes(file[at..at + 4].try_into().unwrap())),
+                // a JPEG file's frame height and width behind 5.
+                Image::Jpeg(file) => {
+                    let frame = file.windows(2).position(|pair| pair == [0xff, 0xc0]).unwrap();
+                    [7, 5].map(|at| u32::from(u16::from_be_bytes([file[frame + at], file[frame + at + 1]])))
+                }
+                Image::Svg(_) => [0, 0],
+            }
         };
         images.iter().map(size).collect()
     }
@@ -160,16 +168,16 @@ mod tests {
 
     #[test]
     fn pictures_stay_whole_where_they_fit_and_shrink_together_where_they_do_not() {
-        let sources = [noise(Part::Side, 400, 200), noise(Part::HeatMap, 700, 700), noise(Part::Diagram, 900, 258)];
+        let sources = [shaded(Part::Side, 400, 200), shaded(Part::HeatMap, 700, 700), shaded(Part::Diagram, 900, 258)];
         let whole = fitted(&sources, usize::MAX).unwrap();
         assert_eq!(sizes(&whole), [[400, 200], [700, 700], [900, 258]]);
         let page = fitted(&sources, bytes(&whole) - 1).unwrap();
-        assert_eq!(sizes(&page), [[320, 160], [560, 560], [640, 130]], "as large as the page shows them");
+        assert_eq!(sizes(&page), [[400, 200], [600, 600], [800, 130]], "as large as the page shows them");
         let free = bytes(&page) / 2;
         let small = fitted(&sources, free).unwrap();
         assert!(bytes(&small) <= free && bytes(&small) > free / 2, "{} of {free}", bytes(&small));
         let [side, heat_map, _] = sizes(&small).try_into().unwrap();
-        let [a, b] = [f64::from(side[0]) / 320.0, f64::from(heat_map[0]) / 560.0];
+        let [a, b] = [f64::from(side[0]) / 400.0, f64::from(heat_map[0]) / 600.0];
         assert!((a - b).abs() < 0.01 && a < 1.0, "{a} {b}");
         assert!(!fitted(&sources, 1).unwrap().is_empty(), "ends even where nothing fits");
     }

@@ -4,7 +4,7 @@ use super::ZtRequest;
 use super::cell::{LookFinding, SheetFinding};
 use super::figures::{self, Room};
 use super::gain::Levels;
-use super::plots::Plot;
+use super::plots::{Plot, Shows};
 use super::report::{ModelReport, ZtReport};
 use super::summary::ImprovementSummary;
 use super::words::{self, short};
@@ -13,12 +13,17 @@ use crate::pipeline::Metric;
 use crate::pipeline::compare::views_around;
 use crate::pipeline::page::{MAP, how_made, legend, section};
 use crate::report::colour::ColourMap;
-use crate::report::page::{Content, Fact, Figure, Figures, Image, Page, Section, Table, Viewer};
+use crate::report::page::{Content, Fact, Figure, Figures, Page, Section, Table, Viewer};
 use crate::report::paper::PaperModel;
 use crate::report::table;
 
 const OUTLINE: &str = "Cameras stand all around an outline. Columns of the diagram are points along the boundary, rows are \
     cameras; green where the camera sees the point.";
+const CONVERGENCE: &str = "Mean error of V by the number of cameras, counted alike (equal) or by the solid angle that each owns \
+    (area); the thin line falls with the number to the power of −0.75, as the latter do on closed forms. The paper prints no \
+    numbers here; it chose 258 cameras.";
+const VIEWER: &str =
+    "Blue to yellow, colours that every eye tells apart; the paper's are those of the heat maps above.";
 const DIFFERENCES: &str = "Differences are white where the pictures are equal, full red from 64 grey levels of 255. From more \
     sides:";
 
@@ -27,7 +32,8 @@ impl ZtReport {
     pub(super) fn page(&self, request: &ZtRequest, plots: &[Plot], commands: &[String]) -> Result<Page> {
         let room = Room::of(self, request, plots)?;
         let mut sections = vec![section("Summary", &self.summary_in_words(), Content::Summary(self.facts()))];
-        let correlation: Vec<Figure> = plots.iter().filter(|plot| plot.model.is_none()).map(Plot::figure).collect();
+        let of_all = plots.iter().filter(|plot| plot.of.is_none());
+        let correlation: Vec<Figure> = of_all.flat_map(|plot| plot.figures.clone()).collect();
         if !correlation.is_empty() {
             sections.push(figures("Improvement by visibility", "", 1, correlation));
         }
@@ -71,9 +77,8 @@ impl ModelReport {
         }
         let levels = Content::Table(cells(&self.level_table()));
         sections.push(section(&format!("{name}: errors by level"), words::LEVELS, levels));
-        let of_model = |plot: &&Plot| plot.model.as_ref() == Some(name);
-        let plots: Vec<Figure> = plots.iter().filter(of_model).map(Plot::figure).collect();
-        sections.extend(self.plots(plots));
+        sections.extend(self.plotted(plots, Shows::Errors, "errors (Fig. 4)", ""));
+        sections.extend(self.plotted(plots, Shows::Convergence, "convergence (Fig. 3)", CONVERGENCE));
         for pictures in &self.findings.pictures {
             for sheet in &pictures.sheets {
                 let preset = pictures.preset.name();
@@ -106,16 +111,14 @@ impl ModelReport {
         let models = self.findings.viewer.as_ref().map(|viewer| viewer.models.clone()).filter(|m| !m.is_empty())?;
         let [toward, ..] = views_around(glam::DVec3::from_array(self.findings.up)).map(|d| d.to_array());
         let viewer = Viewer { models, legend: Some(legend(MAP)), toward, up: self.findings.up };
-        Some(section(&format!("{}, in three dimensions", self.findings.name), "", Content::Viewer(viewer)))
+        Some(section(&format!("{}, in three dimensions", self.findings.name), VIEWER, Content::Viewer(viewer)))
     }
 
-    /// Plots of one panel side by side, the wide one below them.
-    fn plots(&self, mut plots: Vec<Figure>) -> Vec<Section> {
-        let wide = plots.split_off(self.findings.looks.len().min(plots.len()));
-        let rows = [("errors (Fig. 4)", 2, plots), ("convergence (Fig. 3)", 1, wide)].into_iter();
-        let rows = rows.filter(|(_, _, plots)| !plots.is_empty());
-        rows.map(|(what, columns, plots)| figures(&format!("{}: {what}", self.findings.name), "", columns, plots))
-            .collect()
+    /// The model's plots of one kind, side by side.
+    fn plotted(&self, plots: &[Plot], shows: Shows, what: &str, text: &str) -> Option<Section> {
+        let own = plots.iter().filter(|plot| plot.of.as_ref() == Some(&(self.findings.name.clone(), shows)));
+        let shown: Vec<Figure> = own.flat_map(|plot| plot.figures.clone()).collect();
+        (!shown.is_empty()).then(|| figures(&format!("{}: {what}", self.findings.name), text, 2, shown))
     }
 }
 
@@ -142,12 +145,6 @@ fn diagram_caption(look: &LookFinding) -> String {
         look.preset.name(),
         look.cameras
     )
-}
-
-impl Plot {
-    pub(super) fn figure(&self) -> Figure {
-        Figure { image: Image::Svg(self.svg.clone()), caption: self.caption.clone() }
-    }
 }
 
 fn figures(heading: &str, text: &str, columns: usize, figures: Vec<Figure>) -> Section {

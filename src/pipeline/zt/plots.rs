@@ -7,16 +7,34 @@ use super::gain::Levels;
 use super::report::{ModelReport, ZtReport};
 use super::words::short;
 use crate::pipeline::{ConvergenceReport, IndependentReference, MeshConvergence, Metric, Preset};
+use crate::report::page::{Figure, Image};
 use crate::report::plot::{LogLogPlot, MethodCurves, NamedPoint, ScatterGroup, ScatterPlot, TwoAxisPlot};
 
-/// A plot and its file's name.
+/// A plot, as a file and on the page.
 #[derive(Clone)]
 pub(super) struct Plot {
     pub file: String,
-    /// Whose it is; `None` for one of all models.
-    pub model: Option<String>,
-    pub caption: String,
     pub svg: String,
+    /// What it shows of which model; `None` for one of all models.
+    pub of: Option<(String, Shows)>,
+    /// The same, a panel each.
+    pub figures: Vec<Figure>,
+}
+
+/// What a plot of a model shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Shows {
+    /// Figure 4.
+    Errors,
+    /// Figure 3.
+    Convergence,
+}
+
+impl Plot {
+    fn of_one_panel(file: String, svg: String, of: Option<(String, Shows)>, caption: String) -> Self {
+        let figures = vec![Figure { image: Image::Svg(svg.clone()), caption }];
+        Self { file, svg, of, figures }
+    }
 }
 
 impl ZtReport {
@@ -42,7 +60,7 @@ impl ZtReport {
             groups,
         };
         let caption = "Less image error than QB with the same options, by the visibility of the model".to_owned();
-        Ok(Some(Plot { file: "correlation.svg".to_owned(), model: None, caption, svg: plot.to_svg()? }))
+        Ok(Some(Plot::of_one_panel("correlation.svg".to_owned(), plot.to_svg()?, None, caption)))
     }
 }
 
@@ -65,7 +83,7 @@ impl ModelReport {
         };
         let caption = format!("Image and geometric error of QB and VG, preset {} (Fig. 4)", preset.name());
         let file = format!("{name}-errors-{}.svg", preset.name());
-        Ok(Plot { file, model: Some(name.clone()), caption, svg: plot.to_svg()? })
+        Ok(Plot::of_one_panel(file, plot.to_svg()?, Some((name.clone(), Shows::Errors)), caption))
     }
 
     /// Figure 3: how exact V is by the number of cameras.
@@ -75,14 +93,9 @@ impl ModelReport {
         let named = MeshConvergence { file: name.into(), ..convergence.clone() };
         let of_one = ConvergenceReport::of(IndependentReference::Fibonacci, vec![named]);
         let plot: LogLogPlot = of_one.plot();
-        let caption =
-            "Mean error of V by the number of cameras (Fig. 3), cameras counted alike (equal) or by solid angle (area)";
-        Ok(Some(Plot {
-            file: format!("{name}-convergence.svg"),
-            model: Some(name.clone()),
-            caption: caption.to_owned(),
-            svg: plot.to_svg()?,
-        }))
+        let file = format!("{name}-convergence.svg");
+        let figures = of_one.figures().map_err(io::Error::other)?;
+        Ok(Some(Plot { file, svg: plot.to_svg()?, of: Some((name.clone(), Shows::Convergence)), figures }))
     }
 }
 

@@ -5,8 +5,9 @@ use serde::Serialize;
 use super::cell::{LookFinding, RunFinding};
 use super::gain::{Improvement, Levels, PAIRS, PresetPair};
 use super::summary::ImprovementSummary;
-use super::{MOST_VIEWERS, ModelFindings, ZtModel};
+use super::{ModelFindings, ZtModel};
 use crate::pipeline::{Metric, Preset};
+use crate::report::page::MODELS_BYTES;
 use crate::report::paper::Stand;
 
 /// Result of [`super::study_zt`].
@@ -51,14 +52,29 @@ impl ZtReport {
     }
 }
 
-/// Of more than [`MOST_VIEWERS`] models only those of which least is seen can be turned: there the comparison tells most.
+/// Where a page has no room for all models to be turned, those of which least is seen come first: there the comparison tells
+/// most.
 fn leave_viewers_to_the_least_visible(models: &mut [ModelReport]) {
-    let seen = |model: &ModelReport| model.table_visibility().unwrap_or(1.0);
-    let mut order: Vec<usize> = (0..models.len()).collect();
-    order.sort_by(|&a, &b| seen(&models[a]).total_cmp(&seen(&models[b])));
-    for number in order.into_iter().skip(MOST_VIEWERS) {
-        models[number].findings.viewer = None;
+    let viewer = |model: &ModelReport| {
+        let shown = model.findings.viewer.iter().flat_map(|found| &found.models);
+        (model.table_visibility().unwrap_or(1.0), shown.map(|model| model.model.bytes()).sum())
+    };
+    let have_room = with_room(&models.iter().map(viewer).collect::<Vec<_>>(), MODELS_BYTES);
+    for (model, _) in models.iter_mut().zip(have_room).filter(|(_, has_room)| !has_room) {
+        model.findings.viewer = None;
     }
+}
+
+/// Which of (V(M), bytes) have room in `free` bytes, the smallest V(M) first.
+fn with_room(viewers: &[(f64, usize)], free: usize) -> Vec<bool> {
+    let mut order: Vec<usize> = (0..viewers.len()).collect();
+    order.sort_by(|&a, &b| viewers[a].0.total_cmp(&viewers[b].0));
+    let (mut left, mut have_room) = (free, vec![false; viewers.len()]);
+    for number in order {
+        have_room[number] = viewers[number].1 <= left;
+        left -= if have_room[number] { viewers[number].1 } else { 0 };
+    }
+    have_room
 }
 
 impl ModelReport {
@@ -111,5 +127,18 @@ impl ModelReport {
     #[must_use]
     pub fn run(&self, preset: Preset, metric: Metric) -> Option<&RunFinding> {
         self.findings.runs.iter().find(|run| (run.preset, run.metric) == (preset, metric))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::with_room;
+
+    #[test]
+    fn room_goes_to_those_of_which_least_is_seen_and_to_what_fits_beside_them() {
+        let viewers = [(0.9, 2), (0.3, 6), (0.5, 5), (0.2, 3), (1.0, 1)];
+        assert_eq!(with_room(&viewers, 10), [false, true, false, true, true]);
+        assert_eq!(with_room(&viewers, 17), [true, true, true, true, true]);
+        assert_eq!(with_room(&viewers, 0), [false; 5]);
     }
 }

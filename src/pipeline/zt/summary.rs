@@ -21,7 +21,7 @@ pub struct ImprovementSummary {
     pub levels: Levels,
     /// Mean over all models.
     pub all: MeanImprovement,
-    /// Over those with V(M) < 0.5.
+    /// Over those with V(M) < 0.5, as VG's options count it.
     pub below_half: MeanImprovement,
     /// Over the others.
     pub from_half: MeanImprovement,
@@ -56,7 +56,7 @@ impl ImprovementSummary {
         let both = |pair| [Levels::All, Levels::EqualCounts].map(|levels| (pair, levels));
         let of = |((visibility, quadric), levels)| {
             let gain = |model: &ModelReport| model.less_error((visibility, quadric), levels);
-            let known = |model: &ModelReport| Some((model.table_visibility()?, gain(model)?));
+            let known = |model: &ModelReport| Some((model.visibility(visibility)?, gain(model)?));
             let known: Vec<(f64, f64)> = models.iter().filter_map(known).collect();
             let correlation = |&preset: &Preset| Correlation::of(preset, models, gain);
             Self {

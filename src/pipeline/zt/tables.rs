@@ -23,9 +23,12 @@ impl ZtReport {
     #[must_use]
     pub fn table1(&self) -> Table {
         let presets = self.presets();
+        let sure = |model: &ModelReport| model.findings.runs.iter().find_map(|run| run.hidden_seconds);
+        let is_sure = self.models.iter().any(|model| sure(model).is_some());
         let heads = presets.iter().flat_map(|p| [format!("V(M), {}", p.name()), format!("time, {}", p.name())]);
+        let last = is_sure.then(|| "sure of what is hidden".to_owned());
         let first = ["model", "of the paper", "triangles"].map(str::to_owned);
-        let mut table = Table::new(first.into_iter().chain(heads)).left(1);
+        let mut table = Table::new(first.into_iter().chain(heads).chain(last)).left(1);
         for model in &self.models {
             let printed = model.stand.model();
             let mut row = vec![
@@ -39,6 +42,8 @@ impl ZtReport {
                 row.push(beside(format!("{:.3}", look.visibility), visibility));
                 row.push(beside(format!("{} s", seconds(look.seconds)), printed_seconds));
             }
+            let seconds = sure(model).map_or_else(dash, |s| format!("{} s", seconds(s)));
+            row.extend(is_sure.then_some(seconds));
             table = table.row(row);
         }
         table
@@ -133,7 +138,7 @@ impl ModelReport {
             let [vg, qb] = [(i.visibility, Metric::Visibility), (i.quadric, Metric::Quadric)].map(|(p, m)| short(p, m));
             format!("{qb} like {vg}")
         });
-        let heads = ["triangles".to_owned()].into_iter().chain(names()).chain(equal).chain(names());
+        let heads = ["triangles asked for".to_owned()].into_iter().chain(names()).chain(equal).chain(names());
         let unit = |unit: &'static str, columns: usize| std::iter::repeat_n(unit, columns);
         let units = unit("", 1).chain(unit("grey levels", runs.len()));
         let units = units.chain(unit("triangles", self.improvements.len())).chain(unit("% of diagonal", runs.len()));

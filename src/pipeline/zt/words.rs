@@ -1,10 +1,10 @@
 //! What stands beside the tables and figures: the same words on the page and in Markdown.
 
+use super::ZtRequest;
 use super::cell::{LevelFinding, RunFinding};
 use super::gain::{Improvement, Levels, PresetPair, QuadricCount};
 use super::report::{ModelReport, ZtReport};
 use super::summary::MeanImprovement;
-use super::{MOST_VIEWERS, ZtRequest};
 use crate::pipeline::{Metric, Preset};
 use crate::report::paper;
 use crate::report::table::thousands;
@@ -12,13 +12,14 @@ use crate::report::table::thousands;
 pub(super) const SUBTITLE: &str = "The tables and figures of E. Zhang and G. Turk, Visibility-Guided Simplification, IEEE \
     Visualization 2002, made again. Numbers in brackets are the paper's own.";
 pub(super) const TABLE1: &str = "V(M) is the share of directions from which the surface is seen from outside, each counted by \
-    its cosine (eq. 3.2). Options: the paper's, then the best.";
+    its cosine (eq. 3.2); column heads name the options. VG best, before it deletes what is hidden, looks again from other directions \
+    until it is sure: the last column, where there is one.";
 pub(super) const TABLE2: &str = "QB collapses by quadric error alone, VG also by visibility: seconds first, without looking. The \
     last columns tell by how much the image error of VG is below that of QB, mean over the levels; below zero VG is worse. Behind a \
     semicolon: over those levels alone at which both have the triangles that were asked for, and how many these are. VG best \
     deletes hidden triangles first and can be left with fewer; having fewer is no help to its pictures.";
 pub(super) const GAINS: &str = "By how much the image error of VG is below that of QB (%), mean over the models, how many in \
-    brackets; V(M) is the first of table 1. Then Spearman's rank correlation of V(M), as either preset counts it, with that \
+    brackets; V(M) is as VG's options count it. Then Spearman's rank correlation of V(M), as either preset counts it, with that \
     improvement; -1: the less visible a model is, the more is gained. Fewer than five models have none: their order says nothing.";
 pub(super) const LEVELS: &str = "First the image error (RMSE, grey levels), then how many triangles QB takes for the image error \
     of VG in this row, between levels by interpolation, then the geometric error (RMS, % of the diagonal). “With”: the triangles \
@@ -55,15 +56,16 @@ impl ZtReport {
                     .to_owned(),
             );
         }
-        if self.models.len() > MOST_VIEWERS {
-            notes.push(format!(
-                "The {MOST_VIEWERS} models of which least is seen can be turned; a study of fewer shows the others so, too."
-            ));
+        if self.models.iter().any(|model| model.findings.viewer.is_none()) {
+            let words = "Where the page has no room for all models to be turned, those of which least is seen come first; a study of \
+                fewer shows the others so, too.";
+            notes.push(words.to_owned());
         }
-        notes.push(
-            "Times are wall time of this machine; the paper's, in minutes, are of an SGI Octane with 195 MHz."
-                .to_owned(),
-        );
+        let machine = if request.machine.is_empty() { "of this machine" } else { &request.machine };
+        notes.push(format!(
+            "Times are wall time {machine}, or of the machine on which an earlier run found them; the paper's, in minutes, are \
+             of an SGI Octane with 195 MHz."
+        ));
         notes.extend(paper::NOTES.iter().map(|note| format!("In the paper, {note}.")));
         notes
     }
@@ -76,14 +78,16 @@ impl ZtReport {
                 ("where half or more is seen", summary.from_half),
             ];
             let side = |(place, mean): (&str, MeanImprovement)| {
-                Some(format!("{:.1} % {place} (models: {})", mean.less_error?, mean.models))
+                let gain = mean.less_error?;
+                let side = if gain < 0.0 { "above" } else { "below" };
+                Some(format!("{:.1} % {side} that of QB {place} (models: {})", gain.abs(), mean.models))
             };
             let sides: Vec<String> = sides.into_iter().filter_map(side).collect();
             format!(
-                "VG collapses by shape and visibility, QB by shape alone. With the options of preset {}, the image error of VG at \
-                 the same number of triangles is below that of QB by {}.",
+                "VG collapses by shape and visibility, QB by shape alone. With the options of preset {}, the image error of VG is \
+                 {}; mean over the levels.",
                 summary.visibility.name(),
-                sides.join(", by ")
+                sides.join(", and ")
             )
         });
         verdict.into_iter().chain(self.left_out_in_words()).collect::<Vec<_>>().join(" ")
@@ -108,8 +112,25 @@ impl ModelReport {
         let notes = self.stand.model().map_or(&[][..], |paper| paper.notes);
         let notes = notes.iter().map(|note| format!("In the paper, {note}."));
         let sentences =
-            std::iter::once(stand).chain(notes).chain(self.equal_error_in_words()).chain(self.unequal_counts());
+            std::iter::once(stand).chain(notes).chain(self.less_error_where_shown()).chain(self.equal_error_in_words());
+        let sentences = sentences.chain(self.unequal_counts());
         sentences.collect::<Vec<_>>().join(" ")
+    }
+
+    /// By how much VG's error is below that of QB in the pictures.
+    fn less_error_where_shown(&self) -> Option<String> {
+        let asked = self.findings.pictures.first()?.sheets.first()?.triangles;
+        let clause = |improvement: &Improvement| {
+            let error = |preset, metric| Some(self.run(preset, metric)?.level_of(asked)?.errors.image_rms);
+            let (visibility, quadric) = improvement.pair();
+            let [vg, qb] = [error(visibility, Metric::Visibility)?, error(quadric, Metric::Quadric)?];
+            let gain = 100.0 * (1.0 - vg / qb);
+            let side = if gain < 0.0 { "more" } else { "less" };
+            let [vg, qb] = [(visibility, Metric::Visibility), (quadric, Metric::Quadric)].map(|(p, m)| short(p, m));
+            gain.is_finite().then(|| format!("{vg} has {:.1} % {side} image error than {qb}", gain.abs()))
+        };
+        let clauses: Vec<String> = self.improvements.iter().filter_map(clause).collect();
+        (!clauses.is_empty()).then(|| format!("At {} triangles {}.", thousands(asked as u64), clauses.join(", ")))
     }
 
     /// With how many triangles QB has the image error of VG, at a count that the paper compares or shows.

@@ -1,13 +1,13 @@
 //! The files of a finished study.
 
-use std::fs;
-use std::io::{self, ErrorKind};
+use std::io;
 use std::path::Path;
 
 use super::ZtRequest;
 use super::figures::OUTLINE;
 use super::plots::Plot;
 use super::report::{ModelReport, ZtReport};
+use super::store::remove;
 use super::words;
 use crate::error::{Error, Result};
 use crate::io::write_atomic;
@@ -35,7 +35,7 @@ impl ZtReport {
         if request.convergence {
             write("convergence.csv", &|out| self.write_convergence_csv(out))?;
         } else {
-            remove_stale(&request.output.join("convergence.csv"))?;
+            remove(&request.output.join("convergence.csv"))?;
         }
         let outline = Outline::harbour();
         let picture = outline_picture(&outline, &outline.diagram(OUTLINE_SAMPLES, OUTLINE_CAMERAS));
@@ -77,15 +77,5 @@ impl ZtReport {
             Ok(self.correlation_plot()?.into_iter().chain(models.into_iter().flatten()).collect())
         };
         all().map_err(|e| Error::Write { path: directory.to_owned(), message: e.to_string() })
-    }
-}
-
-/// Removes what an earlier run wrote and this one has nothing to say about.
-fn remove_stale(path: &Path) -> Result<()> {
-    match fs::remove_file(path) {
-        Err(e) if e.kind() != ErrorKind::NotFound => {
-            Err(Error::Write { path: path.to_owned(), message: e.to_string() })
-        }
-        _ => Ok(()),
     }
 }

@@ -153,6 +153,7 @@ fn figures_markup(shown: &Figures) -> Markup {
                 figure class=[across(number, figure)] {
                     @match &figure.image {
                         Image::Png(bytes) => { img alt=(figure.caption) src=(data("image/png", bytes)); }
+                        Image::Jpeg(bytes) => { img alt=(figure.caption) src=(data("image/jpeg", bytes)); }
                         Image::Svg(text) => {
                             img alt=(figure.caption) src=(data("image/svg+xml", text.as_bytes()));
                         }

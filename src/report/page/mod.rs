@@ -112,6 +112,8 @@ pub struct Figure {
 pub enum Image {
     /// A PNG file.
     Png(Vec<u8>),
+    /// A JPEG file.
+    Jpeg(Vec<u8>),
     /// An SVG document on white; its colours mean something, so that the dark only dims them.
     Svg(String),
 }
@@ -174,7 +176,7 @@ impl Image {
     #[must_use]
     pub fn embedded_bytes(&self) -> usize {
         let bytes = match self {
-            Self::Png(bytes) => bytes.len(),
+            Self::Png(bytes) | Self::Jpeg(bytes) => bytes.len(),
             Self::Svg(text) => text.len(),
         };
         4 * bytes.div_ceil(3)

@@ -20,7 +20,7 @@ pub enum Stand {
 const SAME_COUNT: f64 = 1e-3;
 
 /// What a count cannot say.
-const FILE: &str = "whether it is the same file, its V(M) beside the paper's must tell";
+const FILE: &str = "taken for the paper's own, of which no more is printed";
 
 impl Stand {
     /// What a model of `triangles` triangles is that goes by the name of `model`.
