@@ -50,6 +50,9 @@ pub const LEVELS: [f64; 7] = [0.5, 0.25, 0.125, 0.0625, 0.031_25, 0.015_625, 0.0
 /// Of how many large models there is room on a page to be turned whole, originals of 150,000 triangles beside their results.
 const WHOLE_VIEWERS: usize = 3;
 
+/// Bytes of a model's name; file systems end at 255 for a whole name.
+const LONGEST_NAME: usize = 200;
+
 /// What [`study_zt`] does.
 #[derive(Debug, Clone)]
 pub struct ZtRequest {
@@ -237,6 +240,10 @@ impl ZtRequest {
         names.sort_unstable();
         if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
             let message = format!("two files are called {}, and so would be their tables; rename one", pair[0]);
+            return Err(Error::Option { name: "MODELS", message });
+        }
+        if let Some(long) = names.iter().find(|name| name.len() > LONGEST_NAME) {
+            let message = format!("the name {long} is too long for the files that are named after it; rename its file");
             return Err(Error::Option { name: "MODELS", message });
         }
         let shrink = self.levels.windows(2).all(|pair| pair[1] < pair[0]);

@@ -96,6 +96,14 @@ fn zt_leaves_foreign_directories_alone_and_knows_the_papers_models() {
     let foreign = run(home.path(), &["study", "zt", "cube.off", "-o", "."]);
     assert_eq!(foreign.code, 4);
     assert!(foreign.err.contains("holds files that no study made"), "{}", foreign.err);
+    fs::create_dir_all(home.path().join("mine/cells")).unwrap();
+    fs::write(home.path().join("mine/cells/battery.txt"), "").unwrap();
+    let alike = run(home.path(), &["study", "zt", "cube.off", "-o", "mine", "--dry-run"]);
+    assert_eq!(alike.code, 4, "somebody else's cells: {}", alike.out);
+    let long = format!("{}.off", "x".repeat(240));
+    fs::copy(home.path().join("cube.off"), home.path().join(&long)).unwrap();
+    let long = run(home.path(), &["study", "zt", "cube.off", &long, "-o", "zt"]);
+    assert!(long.code == 2 && long.err.contains("is too long"), "{}", long.err);
     let unknown = run(home.path(), &["study", "zt", "engine=cube.off", "-o", "zt"]);
     assert_eq!(unknown.code, 2);
     assert!(unknown.err.contains("the paper has no model 'engine'; it has bunny"), "{}", unknown.err);

@@ -207,12 +207,17 @@ fn check_directory(directory: &Path, force: bool) -> Result<()> {
         return Err(Error::Write { path: directory.to_owned(), message });
     }
     let Ok(mut entries) = fs::read_dir(directory) else { return Ok(()) };
-    let ours = directory.join("cells").is_dir();
-    if ours || force || entries.next().is_none() {
+    if is_ours(&directory.join("cells")) || force || entries.next().is_none() {
         return Ok(());
     }
     let message = "holds files that no study made; give another directory, or --force".to_owned();
     Err(Error::Write { path: directory.to_owned(), message })
+}
+
+/// Whether a study keeps its findings in this directory: a folder for each model, and nothing else.
+fn is_ours(cells: &Path) -> bool {
+    let models: Vec<PathBuf> = fs::read_dir(cells).into_iter().flatten().flatten().map(|entry| entry.path()).collect();
+    !models.is_empty() && models.iter().all(|model| model.is_dir())
 }
 
 fn dry_run(request: &ZtRequest, console: &Console) -> std::result::Result<(), Failure> {
