@@ -104,6 +104,8 @@ fn zt_leaves_foreign_directories_alone_and_knows_the_papers_models() {
     fs::copy(home.path().join("cube.off"), home.path().join(&long)).unwrap();
     let long = run(home.path(), &["study", "zt", "cube.off", &long, "-o", "zt"]);
     assert!(long.code == 2 && long.err.contains("is too long"), "{}", long.err);
+    let endless = run(home.path(), &["study", "zt", "/dev/zero", "-o", "zt"]);
+    assert!(endless.code == 3 && endless.err.contains("is no ordinary file"), "{}", endless.err);
     let unknown = run(home.path(), &["study", "zt", "engine=cube.off", "-o", "zt"]);
     assert_eq!(unknown.code, 2);
     assert!(unknown.err.contains("the paper has no model 'engine'; it has bunny"), "{}", unknown.err);

@@ -139,12 +139,12 @@ pub(super) fn remove(path: &Path) -> Result<()> {
 
 /// SHA-256 of a file, which no memory limit is too small for.
 fn hash_of(path: &Path) -> std::io::Result<String> {
-    let mut file = fs::File::open(path)?;
-    if !file.metadata()?.is_file() {
+    // Asked before it is opened: to open a pipe is to wait for who writes into it.
+    if !fs::metadata(path)?.is_file() {
         let message = "is no ordinary file; a study reads its models more than once: save it as a file first";
         return Err(std::io::Error::new(ErrorKind::InvalidInput, message));
     }
-    let (mut hash, mut part) = (Sha256::new(), vec![0; 1 << 16]);
+    let (mut file, mut hash, mut part) = (fs::File::open(path)?, Sha256::new(), vec![0; 1 << 16]);
     loop {
         match file.read(&mut part)? {
             0 => return Ok(hexadecimal(&hash.finalize())),
